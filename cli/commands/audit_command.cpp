@@ -48,7 +48,7 @@ constexpr const char* kNothingMoves =
     "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 
 constexpr const char* kDividesSequences =
-    "only a sequence of keyframes can be divided, not a glTF file; leave this option out";
+    "only the work on a sequence of keyframes can be divided, and this input is a glTF file; leave this option out";
 
 // Quotes a word so that a shell reads the same word back.
 std::string shell_word(const std::string& word) {
@@ -87,14 +87,14 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       input_table(options.input, kRefusedByAudit),
       {{"--rule NAME",
         &options.rule,
-        "how normals between keyframes are interpolated\nOne of gltf (default for glTF), lerp, nlerp (default for "
-        "all other inputs), slerp, step and flat",
+        "the rule by which viewers interpolate normals between keyframes\nOne of gltf (default for glTF), lerp, nlerp "
+        "(default for all other inputs), slerp, step and flat",
         {.rare = true}}},
       options.judge.table("judge the normals that these viewers render"),
       {{"--tolerance DEG", &options.limits.degrees,
         "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names"},
        {"--tears N", &options.limits.torn_edges,
-        "exit with code 4 if more than N edges are torn at a moment\nAn edge of a glTF file is torn if errors jump "
+        "exit with code 4 if more than N edges are torn at one moment\nAn edge of a glTF file is torn if errors jump "
         "by more than 10 degrees across it, which looks like a fold that the surface does not have"},
        {"--poses FILE|random", &options.poses,
         "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
@@ -104,12 +104,15 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
         "judge each target alone from weight LO to HI\nThe default is 0:1",
         {.rare = true}},
        {"--errors FILE", &options.errors,
-        "write the error of every vertex at every sample\nEither .npz for programs, or .ply with the largest error "
-        "of each vertex as its quality, for MeshLab and Blender"},
-       {"--no-weld", &options.no_weld, "do not merge vertices that are always at one point", {.rare = true}}},
+        "write the error of every vertex at every sample, in degrees\nFILE is .npz, for programs, or .ply, for MeshLab "
+        "and Blender, with the largest error of each vertex as its quality"},
+       {"--no-weld",
+        &options.no_weld,
+        "do not merge vertices that are at the same point at all times",
+        {.rare = true}}},
       options.run.options("judge only share I of N equal shares of a sequence\nOUT is a shard, and chronormal "
                           "merge puts all shards together"),
-      {{"--json", &options.json, "print JSON, for programs"}},
+      {{"--json", &options.json, "print the result as JSON, for programs"}},
       options.common.table(false)};
 }
 
@@ -240,8 +243,9 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 // Returns the sentence for an input that does not pass because of errors at samples whose faces almost vanish. `place`
 // names the worst of these samples, and ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
-  return formatted("the worst error is {}, beyond the tolerance of {:g}, where faces almost vanish{}",
-                   with_degrees(with_digits(error.faint_worst, 4)), *audited.limits.degrees, place);
+  return formatted("the worst error is {}, beyond the tolerance of {}, where faces almost vanish{}",
+                   with_degrees(with_digits(error.faint_worst, 4)),
+                   with_degrees(formatted("{:g}", *audited.limits.degrees)), place);
 }
 
 // Returns the sentence for an input that does not pass because more edges are torn at one moment than the limit allows.
@@ -252,8 +256,9 @@ std::string why_torn(const Audited& audited, const MotionError& error) {
 
 // Returns the sentence for an input that does not pass because the normals around some vertices cancel.
 std::string why_cancelled(const MotionError& error) {
-  return formatted("{} no true normal and cannot be judged, since the normals of the faces around cancel",
-                   counted(error.cancelled, "sample has", "samples have"));
+  return formatted(
+      "{} no true normal and cannot be judged, since the normals of the faces around the vertex cancel each other",
+      counted(error.cancelled, "sample has", "samples have"));
 }
 
 // Returns the sentence that says which limit an input exceeds: the tolerance of errors, or else the number of torn
@@ -267,8 +272,8 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
     return counted(error.unlit, "normal", "normals") +
            " of the file would be zero, infinite or NaN in a viewer, which no tolerance allows" + at(unlit_label);
   if (tolerance && error.worst > *tolerance)
-    return formatted("the worst error is {}, beyond the tolerance of {:g}{}", with_degrees(with_digits(error.worst, 4)),
-                     *tolerance, at(worst_label));
+    return formatted("the worst error is {}, beyond the tolerance of {}{}", with_degrees(with_digits(error.worst, 4)),
+                     with_degrees(formatted("{:g}", *tolerance)), at(worst_label));
   if (tolerance && error.faint_worst > *tolerance) return why_faint(audited, error, at(faint_label));
   if (tolerance && error.cancelled > 0)
     return why_cancelled(error) + at(cancelled_label) + "; give each side of a sheet its own vertices";
@@ -287,7 +292,8 @@ std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
 std::string why_beyond(const Audited& audited) {
   const MotionError& error = audited.audit.error;
   if (!audited.audit.is_judged() && error.cancelled == 0 && error.unlit == 0)
-    return "nothing could be judged, since no face that moves has an area";
+    return "nothing could be judged, since no face that moves has an area; run chronormal inspect to list faces "
+           "without area; run chronormal inspect to list faces without area";
   return why_beyond(audited, error, worst_label(audited), unlit_label(audited), faint_label(audited),
                     cancelled_label(audited));
 }

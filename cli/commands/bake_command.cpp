@@ -61,8 +61,8 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     how.encoding = find_bake_encoding(options.encode);
     if (!how.encoding)
       return misuse("--encode",
-                    "the encoding must be smallest, harmless, exact or endpoint; for a sequence, harmless, exact, "
-                    "endpoint or keys");
+                    "the encoding must be smallest, harmless, exact or endpoint for a glTF file, and harmless, exact, "
+                    "endpoint or keys for a sequence");
   }
   if (!options.viewers.empty()) {
     Result<std::vector<Viewer>> viewers = find_viewers(options.viewers);
@@ -99,7 +99,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     return misuse("--json", "JSON and the result cannot both go to the standard output; write the result to a file");
   if (options.drivers) {
     if (options.drivers->empty() || *options.drivers == "-")
-      return misuse("--drivers", "the name of the file is missing; give a name other than -");
+      return misuse("--drivers", "the drivers need a file of their own; give a name, which cannot be -");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
@@ -203,7 +203,8 @@ bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
   say("bake",
-      formatted("{} of the result would be zero, infinite or NaN in a viewer, which no tolerance allows",
+      formatted("{} of the result would be zero, infinite or NaN in a viewer, which no tolerance allows; run "
+                "chronormal audit on the result to see where",
                 counted(unlit, "normal", "normals")),
       Tone::kError);
   return false;
@@ -293,8 +294,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
     if (*how.tolerance < kLeastKeyTolerance)
-      return misuse("--path", formatted("the curves are cut with an error of {}, which uses up the tolerance "
-                                        "of {:g}; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
+      return misuse("--path", formatted("the curves are cut with an error of {}, which uses up the tolerance of {:g} "
+                                        "degrees; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
                                         with_degrees(with_digits(pieces, 6)), asked));
   }
   if (options.smooth)
@@ -304,12 +305,13 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                   "--recompute-base is only for glTF files, and the input is a sequence; leave --recompute-base out");
   const std::string extension = utf8_of(path_of(output).extension());
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
-    return misuse(output, "a sequence can only be written as .glb; choose such a name");
+    return misuse(output, "a sequence can only be written as .glb; choose a name that ends in .glb");
   MotionStream& stream = *input.stream().value();
   const Motion& motion = stream.motion();
   if (motion.kind == MotionKind::kTargets)
     return invalid_input(input.name(),
-                         "the input is targets, not a sequence; write a .glb with convert first, and bake that file");
+                         "the input is a base with targets, not a sequence; write both as a .glb with chronormal "
+                         "convert first, and bake that file");
   if (motion.segments.size() + 1 != motion.keyframes.size())
     return invalid_input(
         input.name(),
@@ -425,9 +427,11 @@ std::vector<Option> with_output(std::vector<Option> table, std::optional<std::st
 Command bake_command() {
   auto options = std::make_shared<BakeArguments>();
   const std::vector<RefusedOption> refused = {
-      {"--base", "write a .glb of the base and its targets with convert first, and bake that file"},
-      {"--animation", "bake corrects all animations of a glTF file at once, so leave it out"},
-      {"--world", "bake writes normals in the space of each mesh, so leave it out"}};
+      {"--base",
+       "bake reads targets only from a glTF file; write the base and its targets as a .glb with chronormal convert, "
+       "and bake that file"},
+      {"--animation", "bake corrects all animations of a glTF file at once; leave --animation out"},
+      {"--world", "bake writes normals in the space of each mesh; leave --world out"}};
   return {
       "bake",
       "Correct the normals of a glTF file, or make a glTF file from a sequence",
@@ -459,7 +463,7 @@ Command bake_command() {
          {.rare = true}},
         {"--recompute-base",
          &options->recompute_base,
-         "compute new base normals, too, from the geometry",
+         "also replace the base normals by new ones that are computed from the geometry",
          {.rare = true}},
         {"--smooth", &options->smooth, "give smooth normals to primitives that have none"},
         {"--max-bytes N",
@@ -483,19 +487,25 @@ Command bake_command() {
          "list the candidates with their errors, and write nothing\nOnly with --encode smallest"},
         {"--dense-zeros",
          &options->dense_zeros,
-         "write zeros in full, for programs that need them (Assimp)",
+         "write deltas that are zero in full, for programs that cannot read sparse ones, such as Assimp",
          {.rare = true}},
         {"--tolerance DEG", &options->tolerance,
-         "the largest error allowed along the animations\nWith harmless and exact, correction targets that turn no "
-         "normal "
-         "by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
+         "the largest error allowed along the animations, in degrees\nWith harmless and exact, correction targets that "
+         "turn no normal by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
         {"--drivers FILE",
          &options->drivers,
-         "also write how to drive correction targets, as JSON\nThe extras of the result say the same",
+         "also write to FILE, as JSON, how a program drives the correction targets\nThe extras in the result say the "
+         "same",
          {.rare = true}},
-        {"--no-weld", &options->no_weld, "do not merge vertices that are always at one point", {.rare = true}},
-        {"--no-audit", &options->no_audit, "do not compare the errors before and after", {.rare = true}},
-        {"--json", &options->json, "print JSON, for programs"}},
+        {"--no-weld",
+         &options->no_weld,
+         "do not merge vertices that are at the same point at all times",
+         {.rare = true}},
+        {"--no-audit",
+         &options->no_audit,
+         "do not compare the errors before and after the bake, to save time",
+         {.rare = true}},
+        {"--json", &options->json, "print the result as JSON, for programs"}},
        with_output(options->common.table(true), options->output)},
       "Your base normals stay as they are, and so do all bytes that have nothing to do with the normals of "
       "targets.\nOUT may be INPUT with --force.\n"

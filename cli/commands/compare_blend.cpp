@@ -13,7 +13,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
     return misuse("--active", "the number of targets must be a whole number of at least 1");
   if (!input.animation.empty() && arguments.active)
     return misuse("--active",
-                  "--active cannot be used with --animation, which decides itself which targets are active; leave one "
+                  "--active cannot be used with --animation, whose weights decide which targets are active; leave one "
                   "of the two out");
   if (!input.animation.empty() && elements_given)
     return misuse("--animation",
@@ -59,12 +59,13 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   if (!opened) return opened.error();
   if (opened.value().document() != nullptr && !elements_given) {
     if (input.world)
-      return misuse(
-          "--world",
-          "stored normals cannot be compared where nodes put a mesh; leave --world out, or choose --elements");
+      return misuse("--world",
+                    "the stored normals of the file can only be compared in the space of each mesh; leave --world out, "
+                    "or choose --elements");
     if (elements.crease_angle != 180 || elements.no_weld)
       return misuse("--elements",
-                    "--crease and --no-weld do not apply to the stored normals of the file; choose --elements");
+                    "--crease and --no-weld do not apply to the stored normals of the file; leave them out, or compute "
+                    "normals with --elements");
     options.progress = progress.callback("comparing");
     Result<BlendComparison> compared = compare_blends(*opened.value().document(), options);
     progress.clear();

@@ -112,55 +112,56 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
     return value == "text" || value == "operations" || value == "latex" ? ""
                                                                         : "the table must be text, operations or latex";
   };
-  return {input_table(options.input),
-          {{"--each", &options.each,
-            "compare several motions side by side\nEvery INPUT and every --sample is a motion of its own"},
-           {"--schemes A,B,...", &options.schemes, "the schemes to compare, in this order (listed below)"},
-           {"--samples N",
-            &options.samples,
-            "how many moments of each segment are compared\nBoth ends are included. The default is 21",
-            {.check = check_whole(2, kMostSamples), .rare = true}}},
-          options.elements.table(),
-          {{"--weighting NAME",
-            &options.weighting,
-            "how much each face counts in a vertex normal\nNeeds --elements vertices or corners. area (default), or "
-            "another that sample --help lists",
-            {.rare = true}},
-           {"--access KIND",
-            &options.access,
-            "how moments are computed: random or sequential\nrandom (default) computes each moment alone, sequential "
-            "from the one before",
-            {.check = check_access, .rare = true}}},
-          {{"--certify",
-            &options.certify,
-            "bound the largest error of each scheme at any time\nRounding is included, and no sample exceeds the bound",
-            {.rare = true}},
-           {"--tolerance DEG", &options.tolerance,
-            "find the cheapest scheme that is always within DEG degrees\nIts bound is certified at every time. The "
-            "exit code is 4 if there is no such scheme"}},
-          options.blend.table(),
-          options.truth.table(),
-          {{"--face N",
-            &options.face,
-            "show what each scheme does to face N, counted from 0\nThe face is in segment 0, or in segment S with N:S. "
-            "--json has all data of Figures 1 to 3 of the paper",
-            {.rare = true}},
-           {"--errors FILE",
-            &options.errors,
-            "write the error of every element at every sample\nEither .npz for programs, or .ply of one scheme with "
-            "the largest error of each element as its quality, for MeshLab and Blender",
-            {.rare = true}}},
-          options.run.options("compare only share I of N equal shares of the segments\nOUT is a shard, and chronormal "
-                              "merge puts all shards together"),
-          {{"--json", &options.json, "print JSON, for programs"},
-           {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
-           {"--table KIND",
-            &options.table,
-            "print another kind of table\nOne of text (default), operations (which adds the cost of an evaluation) "
-            "and latex (both tables of the paper, for your meshes)",
-            {.excludes = "--json", .check = check_table, .rare = true}},
-           {"--no-times", &options.no_times, "leave out measured times, so that output repeats", {.rare = true}}},
-          options.common.table(false)};
+  return {
+      input_table(options.input),
+      {{"--each", &options.each,
+        "compare several motions side by side\nEvery INPUT and every --sample is a motion of its own"},
+       {"--schemes A,B,...", &options.schemes, "the schemes to compare, in this order (listed below)"},
+       {"--samples N",
+        &options.samples,
+        "how many moments of each segment are compared\nBoth ends are included. The default is 21",
+        {.check = check_whole(2, kMostSamples), .rare = true}}},
+      options.elements.table(),
+      {{"--weighting NAME",
+        &options.weighting,
+        "how much each face counts in a vertex normal\nNeeds --elements vertices or corners. area (default), or "
+        "another that sample --help lists",
+        {.rare = true}},
+       {"--access KIND",
+        &options.access,
+        "how moments are computed: random or sequential\nrandom (default) computes each moment alone, sequential "
+        "from the one before",
+        {.check = check_access, .rare = true}}},
+      {{"--certify",
+        &options.certify,
+        "bound the largest error of each scheme at any time\nRounding is included, and no sample exceeds the bound",
+        {.rare = true}},
+       {"--tolerance DEG", &options.tolerance,
+        "find the cheapest scheme that is always within DEG degrees\nIts bound is certified at every time. The "
+        "exit code is 4 if there is no such scheme"}},
+      options.blend.table(),
+      options.truth.table(),
+      {{"--face N",
+        &options.face,
+        "show what each scheme does to face N, counted from 0\nThe face is in segment 0, or in segment S with N:S. "
+        "--json has all data of Figures 1 to 3 of the paper",
+        {.rare = true}},
+       {"--errors FILE",
+        &options.errors,
+        "write the error of every element at every sample, in degrees\nFILE is .npz, for programs, or .ply, for "
+        "MeshLab and Blender, with the largest error of each element as its quality, for one scheme",
+        {.rare = true}}},
+      options.run.options("compare only share I of N equal shares of the segments\nOUT is a shard, and chronormal "
+                          "merge puts all shards together"),
+      {{"--json", &options.json, "print the result as JSON, for programs"},
+       {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
+       {"--table KIND",
+        &options.table,
+        "print another kind of table\nOne of text (default), operations (which adds the cost of an evaluation) "
+        "and latex (both tables of the paper, for your meshes)",
+        {.excludes = "--json", .check = check_table, .rare = true}},
+       {"--no-times", &options.no_times, "leave measured times out, so that each run prints the same", {.rare = true}}},
+      options.common.table(false)};
 }
 
 // Compares one motion. If several ranks (processes of MPI) divide the work, the result is empty on all but the first,
@@ -458,9 +459,11 @@ Result<int> run(const CompareArguments& options) {
     const bool is_judged = std::any_of(schemes.begin(), schemes.end(),
                                        [](const SchemeComparison& scheme) { return scheme.quality.count > 0; });
     say("compare",
-        is_judged ? formatted("{}: no scheme is always within the tolerance of {}", printable(input.name),
-                              with_degrees(with_digits(*options.tolerance, 6)))
-                  : formatted("{}: no scheme could be judged, since no face has an area at any sample",
+        is_judged ? formatted("{}: no scheme is always within the tolerance of {}; compare more schemes with "
+                              "--schemes, or allow a larger --tolerance",
+                              printable(input.name), with_degrees(with_digits(*options.tolerance, 6)))
+                  : formatted("{}: no scheme could be judged, since no face has an area at any sample; run chronormal "
+                              "inspect to list faces without area",
                               printable(input.name)),
         Tone::kError);
     exit = kExitBeyond;

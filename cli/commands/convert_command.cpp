@@ -74,7 +74,8 @@ Command convert_command() {
           {input_table(options->input),
            {{"--no-weld",
              &options->no_weld,
-             "do not merge vertices that are always at one point\nOnly for the normals of targets",
+             "do not merge vertices that are at the same point at all times\nThis only affects the normals of targets "
+             "in a .glb",
              {.rare = true}}},
            options->common.table(true)},
           convert_footer(),

@@ -52,7 +52,7 @@ Command inspect_command() {
   return {"inspect",
           "List what a file contains and what may cause wrong normals",
           {input_table(options->input),
-           {{"--json", &options->json, "print JSON, for programs"}},
+           {{"--json", &options->json, "print the result as JSON, for programs"}},
            options->common.table(false)},
           "INPUT is a motion or a single mesh. inspect lists what makes normals go wrong, such as faces without area, "
           "faces\nthat turn far, edges of more than two faces, vertices at the same point, and normals that do not "

@@ -5,7 +5,7 @@
 namespace chronormal::cli {
 
 Question collapse_question() {
-  return {"collapse", "when faces lose their area, and which turn over (exact)", {}, [] {
+  return {"collapse", "when faces lose their area, and which faces turn over then (exact)", {}, [] {
             return Result<Ask>([](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,
                                   const ElementOptions&) { return query_collapse(motion, span, progress); });
           }};

@@ -148,7 +148,7 @@ Command query_command() {
   // The command takes an interval of time instead of a range of keyframes, so --from and --to have another meaning
   // here.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
-  input.insert(input.begin(), {"QUESTION", &options->question, "the question (listed below)"});
+  input.insert(input.begin(), {"QUESTION", &options->question, "the question to answer (listed below)"});
   for (const Question& question : options->questions)
     for (Option option : question.options) {
       option.help = question.name + ": " + option.help;
@@ -158,9 +158,12 @@ Command query_command() {
     option.help = "facing, shutter: " + option.help;
     own.push_back(std::move(option));
   }
-  own.push_back({"--from T", &options->span.from, "examine the motion from this time on\nFor targets, T is a weight"});
-  own.push_back({"--to T", &options->span.to, "examine the motion up to this time"});
-  own.push_back({"--json", &options->json, "print JSON, for programs"});
+  own.push_back(
+      {"--from T", &options->span.from,
+       "examine the motion from time T on, in seconds\nFor targets, T is a weight. The default is the beginning"});
+  own.push_back({"--to T", &options->span.to,
+                 "examine the motion up to time T, in seconds\nFor targets, T is a weight. The default is the end"});
+  own.push_back({"--json", &options->json, "print the result as JSON, for programs"});
   return {"query",
           "Answer questions about normals over whole intervals of time",
           {std::move(input), std::move(own), options->common.table(false)},

@@ -121,28 +121,30 @@ Command report_command() {
   auto options = std::make_shared<ReportArguments>();
   const std::vector<RefusedOption> refused = {
       {"--world", "errors do not depend on where nodes put a mesh, so report shows each mesh in its own space"}};
-  return {"report",
-          "Make a web page that compares your model with correct shading",
-          {input_table(options->input, refused),
-           options->judge.table("also show the normals that these viewers render"),
-           {{"--no-plan", &options->no_plan, "do not compute what bake could do, to save time\nOnly for glTF files"},
-            {"--template FILE",
-             &options->page_template,
-             "use this page as the template of the report\nThe default is the one that comes with the program",
-             {.check = check_given("the name of the template is empty"), .rare = true}},
-            {"--json", &options->json, "print JSON, for programs"}},
-           options->common.table(true)},
-          "OUT.html is a single page that needs no network: the mesh, its errors in colours, a slider over the motion, "
-          "and\na list of the worst places. It stays below 30 MB, and says what was left out for that. OUT.bin has the "
-          "data\nalone (docs/formats.md).\n"
-          "\nExamples:\n"
-          "  chronormal report face.glb -o face.html\n"
-          "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"
-          "  chronormal report walk/ -o walk.html\n"
-          "  chronormal report --base face.obj smile.obj frown.obj -o face.html\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
-          [options] { return run(*options); },
-          refused};
+  return {
+      "report",
+      "Make a web page that compares your model with correct shading",
+      {input_table(options->input, refused),
+       options->judge.table("also show the normals that these viewers render"),
+       {{"--no-plan", &options->no_plan, "do not compute what bake could do, to save time\nOnly for glTF files"},
+        {"--template FILE",
+         &options->page_template,
+         "use this page as the template of the report\nThe default is the one that comes with the program",
+         {.check = check_given("the name of the template is empty; give the name of a file, or leave --template out"),
+          .rare = true}},
+        {"--json", &options->json, "print the result as JSON, for programs"}},
+       options->common.table(true)},
+      "OUT.html is a single page that needs no network: the mesh, its errors in colours, a slider over the motion, "
+      "and\na list of the worst places. It stays below 30 MB, and says what was left out for that. OUT.bin has the "
+      "data\nalone (docs/formats.md).\n"
+      "\nExamples:\n"
+      "  chronormal report face.glb -o face.html\n"
+      "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"
+      "  chronormal report walk/ -o walk.html\n"
+      "  chronormal report --base face.obj smile.obj frown.obj -o face.html\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+      [options] { return run(*options); },
+      refused};
 }
 
 }  // namespace chronormal::cli

@@ -212,7 +212,7 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
     say("sample",
-        formatted("the result will be large: {} with {} each, which are {:.1f} GB",
+        formatted("the result will have {2:.1f} GB, for {0} with {1} each; to make it smaller, give fewer moments",
                   counted(moments, "moment", "moments"), counted(elements, "normal", "normals"), bytes / 1e9),
         Tone::kWarning);
 }
@@ -251,14 +251,14 @@ Result<int> run(const SampleArguments& options) {
   if (const Status done = run.finish(); !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
-        formatted("of {} of {}, {} (0, 0, 0), since the faces there have no area",
+        formatted("of {} of {}, {} written as (0, 0, 0), since the faces there have no area",
                   counted(written.value().normals, "normal", "normals"), options.elements.kind(),
                   counted(written.value().zeros, "is", "are")),
         Tone::kWarning);
   if (request.sample.stepping && !options.common.quiet) {
     const Drift& drift = written.value().drift;
-    say_text(formatted("{} played step by step drifts by up to {}, at {} {} and time {}\n", options.scheme,
-                       with_degrees(with_digits(drift.largest * kDegreesPerRadian, 3)),
+    say_text(formatted("scheme {} played step by step drifts from the curve by up to {}, at {} {} and time {}\n",
+                       options.scheme, with_degrees(with_digits(drift.largest * kDegreesPerRadian, 3)),
                        one_element(request.sample.elements.kind), grouped(drift.output), with_digits(drift.time, 6)));
   }
   say_written(options.common, counted(written.value().normals, "normal", "normals"));

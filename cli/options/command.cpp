@@ -26,7 +26,8 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)
     say_text(formatted(
-        "{} paths: {} cut into {}, with normals within {} of the curves; coordinates are rounded by {:.1g}{}\n",
+        "{} paths: {} cut into {}, whose normals are within {} of those of the curves; coordinates are rounded by up "
+        "to {:.1g}{}\n",
         cut.skins ? "skinned" : path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
         counted(cut.pieces, "straight piece", "straight pieces"), with_degrees(formatted("{}", cut.path.tolerance)),
         cut.rounding, cut.skins ? ", in the scene's world" : ""));
@@ -58,7 +59,7 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
 std::string morph_names() {
   std::string names;
   for (const BuiltinMorph& morph : builtin_morphs()) names.append(morph.name).append(", ");
-  return formatted("a built-in morph instead of files\nOne of {}or {}, which is a set of targets", names,
+  return formatted("use a built-in morph instead of files\nOne of {}or {}, which is a set of targets", names,
                    builtin_blend_shapes().front().name);
 }
 
@@ -141,7 +142,7 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        &input.base,
        "the mesh of which every INPUT is a morph target\nThe inputs are .obj or .ply meshes, .target or .target.gz "
        "files of MakeHuman, or folders of them",
-       {.check = check_given("the name of the file is empty")}},
+       {.check = check_given("the name of the file is empty; give the name of a mesh")}},
       {"--animation NAME",
        &input.animation,
        "the animation of a glTF file to use, by name or number\nWithout it, each morph target is a motion of its own, "
@@ -159,8 +160,14 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        {.check = check_whole(0), .rare = true}},
       {"--sample NAME", &input.samples, morph_names()},
       {"--fps N", &input.frames_per_second, "keyframes per second, for formats without times\nThe default is 1"},
-      {"--from K", &input.from, "the first keyframe of a sequence to use, counted from 0", {.check = check_whole(0)}},
-      {"--to K", &input.to, "the last keyframe of a sequence to use", {.check = check_whole(0)}},
+      {"--from K",
+       &input.from,
+       "the first keyframe of a sequence to use, counted from 0 (default: 0)",
+       {.check = check_whole(0)}},
+      {"--to K",
+       &input.to,
+       "the last keyframe of a sequence to use, counted from 0 (default: the last one)",
+       {.check = check_whole(0)}},
       {"--every N", &input.every, "use only every Nth keyframe of a sequence", {.check = check_whole(1), .rare = true}},
       {"--loop", &input.loop, "let the first keyframe follow the last one, as in a loop", {.rare = true}},
       {"--strict",
@@ -187,7 +194,7 @@ std::vector<Option> ElementArguments::table() {
           {"--crease DEG", &crease_angle,
            "treat edges sharper than DEG degrees as hard\nNeeds --elements corners. The angle is between two "
            "faces in the first keyframe. The default is 180, for no hard edges"},
-          {"--no-weld", &no_weld, "do not merge vertices that are always at one point", {.rare = true}}};
+          {"--no-weld", &no_weld, "do not merge vertices that are at the same point at all times", {.rare = true}}};
 }
 
 Result<ElementOptions> ElementArguments::options() const {

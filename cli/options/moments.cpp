@@ -50,7 +50,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
 // exactly LAST.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
   const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
-  if (ends.size() != 3) return wrong("a range must be FIRST:STEP:LAST");
+  if (ends.size() != 3) return wrong("a range must be FIRST:STEP:LAST, such as 0:0.1:2");
   double numbers[3] = {};
   for (std::size_t i = 0; i < 3; ++i) {
     const Result<double> number = parse_number("--times", ends[i]);
@@ -59,7 +59,7 @@ Status append_range(const std::vector<std::string_view>& ends, std::string_view 
   }
   const auto [first, step, last] = numbers;
   if (!(step > 0) || !(first <= last))
-    return wrong("the step must be greater than 0, and the last time not before the first");
+    return wrong("the step must be greater than 0, and the last time must not be before the first");
   const double steps = (last - first) / step;
   if (!(steps + static_cast<double>(times.size()) < static_cast<double>(kMostTimes)))
     return wrong("the list has more than 1,000,000 times; take a larger step");
@@ -120,9 +120,12 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
     const bool is_quoted = rest.starts_with('"');
     if (is_quoted) {
       name = take_quoted(rest);
-      if (!name) return misuse("--weights", formatted("a closing quote is missing in '{}'", list));
+      if (!name)
+        return misuse("--weights",
+                      formatted("a closing quote is missing in '{}'; write names as \"NAME\"=WEIGHT", list));
       rest = trimmed(rest);
-      if (!rest.starts_with('=')) return misuse("--weights", formatted("=WEIGHT is missing after '{}'", *name));
+      if (!rest.starts_with('='))
+        return misuse("--weights", formatted("target '{0}' has no weight; write \"{0}\"=WEIGHT", *name));
     }
     more = rest.find(',') != std::string_view::npos;
     std::string_view part = take_part(rest);
@@ -177,7 +180,8 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
     if (!target) return misuse("--weights", target.error().message);
     std::optional<double>& own = given[target.value()];
     if (own)
-      return misuse("--weights", formatted("target {} has two weights; give one", target_label(names, target.value())));
+      return misuse("--weights", formatted("target {} has two weights in this pose; give only one",
+                                           target_label(names, target.value())));
     own = weight;
   }
   std::vector<double> weights;
@@ -216,19 +220,18 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
 }  // namespace
 
 std::vector<Option> MomentArguments::table() {
-  return {
-      {"--times LIST", &times,
-       "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
-       "keyframes. A mesh that does not move needs no times"},
-      {"--weights LIST", &weights,
-       "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
-       "target needs a weight. Repeat the option for more poses"},
-      {"--step N",
-       &step,
-       "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step is computed from the one before by "
-       "additions, and every 64 steps from the curve; N:M does so every M steps, N:0 never. The largest drift is "
-       "printed",
-       {.excludes = "--times", .rare = true}}};
+  return {{"--times LIST", &times,
+           "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
+           "keyframes. A mesh that does not move needs no times"},
+          {"--weights LIST", &weights,
+           "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
+           "target needs a weight. Repeat the option for more poses"},
+          {"--step N",
+           &step,
+           "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step only adds to the one before. "
+           "Every 64 steps, normals are computed anew from the curve, or every M steps with N:M, or never with N:0. "
+           "The largest drift is printed",
+           {.excludes = "--times", .rare = true}}};
 }
 
 std::size_t AskedMoments::count() const noexcept {
@@ -270,7 +273,7 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
     if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
     if (steps >= kMostTimes / segments)
-      return misuse("--step", "the steps are more than 1,000,000 moments; take fewer steps");
+      return misuse("--step", "the steps of all segments are more than 1,000,000 moments; take fewer steps");
     return step_moments(motion, steps);
   }
   if (const Status status = check_kind(motion, asked); !status) return status.error();

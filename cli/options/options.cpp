@@ -229,7 +229,7 @@ Result<int> understand_and_run(const std::vector<Command>& commands, std::span<c
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
     say(name,
-        parsed.empty() ? formatted("option '{}' stands before the command; put it after the command", first)
+        parsed.empty() ? formatted("option '{}' stands before the command; put the option after the command", first)
                        : error.what(),
         Tone::kError);
     say_where_help_is(name);

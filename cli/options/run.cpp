@@ -75,7 +75,7 @@ std::string difference(const Json& old, const Json& now) {
   for (const auto& item : old.items()) names.push_back(item.key());
   for (const std::string& name : names) {
     const std::string before = quoted_value(old, name), after = quoted_value(now, name);
-    if (before != after) return formatted("{} was {} then and is {} now", name, before, after);
+    if (before != after) return formatted("{} was {} in that run and is {} now", name, before, after);
   }
   return "";
 }
@@ -119,7 +119,7 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
     say(command_,
-        formatted("an earlier run has finished {} of the {}; this run does the others", grouped(done), things),
+        formatted("an earlier run has finished {} of the {}; this run computes the others", grouped(done), things),
         Tone::kWarning);
   return Success{};
 }

@@ -256,9 +256,11 @@ std::string left_text(const GltfBake& bake) {
   for (const BakedMesh& mesh : bake.meshes) left_out += mesh.left_out;
   std::string text;
   if (left_out > 0)
-    text += counted(
-        left_out, "correction that would help least was left out, since one of these viewers has no room for more\n",
-        "corrections that would help least were left out, since one of these viewers has no room for more\n");
+    text += counted(left_out,
+                    "correction target that would help least was left out, since one of the viewers that the file is "
+                    "made for has no room for more\n",
+                    "correction targets that would help least were left out, since one of the viewers that the file is "
+                    "made for has no room for more\n");
   return text;
 }
 

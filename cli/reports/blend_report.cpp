@@ -112,7 +112,7 @@ std::string notes(const BlendSubject& subject) {
 std::string notes(const BlendComparison& comparison) {
   std::string text;
   if (comparison.still > 0)
-    text += formatted("{} left out, since no target moves a normal\n",
+    text += formatted("{} left out, since no target moves any of its normals\n",
                       counted(comparison.still, "mesh was", "meshes were"));
   if (comparison.flat > 0)
     text += formatted("{} left out, since no normals are stored; add --elements vertices to compare smooth ones\n",

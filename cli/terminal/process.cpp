@@ -45,7 +45,7 @@ bool end_by_lost_reader() {
 
 void end_by_lost_input() {
   remove_temporaries();
-  end_line_and_say("an input was shortened by another program, or can no longer be read");
+  end_line_and_say("another program has shortened an input, or an input can no longer be read; run the command again");
   end_now(kExitFailed);
 }
 
@@ -59,7 +59,9 @@ void end_for_want_of_memory() {
 
 void end_by_error() {
   remove_temporaries();
-  end_line_and_say("out of memory, or an internal error");
+  end_line_and_say(
+      "the program has run out of memory, or has an error; try a smaller part of the input, and report this if it "
+      "remains");
   end_now(kExitFailed);
 }
 

@@ -411,8 +411,9 @@ std::string bake_sequence_of(Opened& input, BakeOptions options, std::string& js
     const Result<const Motion*> motion = input.motion();
     if (!motion) return motion.error();
     if (motion.value()->kind == MotionKind::kTargets)
-      return invalid_input(input.name(),
-                           "the input is targets, not a sequence; write a glTF file of them first, and bake that file");
+      return invalid_input(
+          input.name(),
+          "the input is a base with targets, not a sequence; write both as a glTF file first, and bake that file");
     if (motion.value()->segments.size() + 1 != motion.value()->keyframes.size())
       return invalid_input(
           input.name(),

@@ -85,7 +85,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
   EXPECT_EQ(beyond.exit_code, 4);
   expect_words(beyond.out, {"90.00 at worst", "; beyond 89.9 degrees\n"});
   EXPECT_EQ(beyond.err,
-            "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
+            "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9 degrees: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {"; within 90.1 degrees\n"});
   // In every viewer, four edges of the hinge are torn at the same moment.
@@ -156,7 +156,7 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
   EXPECT_EQ(half_way.exit_code, 4);
   expect_words(half_way.out, {"within 20 degrees in 1 of 2 viewers\n", "beyond the limits"});
   expect_words(half_way.err, {"chronormal audit: three.js: the worst error is ",
-                              " degrees, beyond the tolerance of 20: vertex 3 of "});
+                              " degrees, beyond the tolerance of 20 degrees: vertex 3 of "});
   EXPECT_EQ(half_way.err.find("Godot"), std::string::npos);
   const Json json = Json::parse(run("long.glb --samples 3 --tolerance 20 --for three,godot --json").out);
   EXPECT_EQ(json["passed"], false);
@@ -334,9 +334,11 @@ TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
   EXPECT_EQ(json["cancelled"], 2);
   const ProcessResult gate = run("open.obj folded.obj --samples 2 --tolerance 180");
   EXPECT_EQ(gate.exit_code, 4);
-  expect_words(gate.err,
-               {"2 samples have no true normal and cannot be judged, since the normals of the faces around cancel"});
-  expect_words(gate.out, {"2 of the samples cannot be judged because normals of faces cancel", "beyond 180"});
+  expect_words(
+      gate.err,
+      {"2 samples have no true normal and cannot be judged, since the normals of the faces around the vertex cancel "
+       "each other"});
+  expect_words(gate.out, {"2 of the samples cannot be judged because the normals of faces cancel", "beyond 180"});
   EXPECT_EQ(gate.out.find("nothing to do"), std::string::npos) << gate.out;
   EXPECT_EQ(run("open.obj half.obj --tolerance 180").exit_code, 0);
   ASSERT_EQ(run("open.obj folded.obj --samples 2 --tolerance 180 --shard 1/1 -o part.json").exit_code, 0);

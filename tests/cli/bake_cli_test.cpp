@@ -389,7 +389,8 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   for (const char* const option : {"--plan", "--max-targets 5", "--animations-only"})
     expect_error(std::string("f_0.obj f_1.obj -o out.glb ") + option, 2, "is only for glTF files");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");
-  expect_error("f_0.obj f_1.obj -o out.gltf", 2, "a sequence can only be written as .glb; choose such a name");
+  expect_error("f_0.obj f_1.obj -o out.gltf", 2,
+               "a sequence can only be written as .glb; choose a name that ends in .glb");
   expect_error("--base f_0.obj f_1.obj -o out.glb", 2, "--base");
   expect_error("f_0.obj f_1.obj -o out.glb --smooth", 2, "--smooth");
   expect_error("f_0.obj f_1.obj -o out.glb --recompute-base", 2, "--recompute-base");

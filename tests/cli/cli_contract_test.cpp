@@ -377,7 +377,8 @@ TEST_F(Cli, options_of_other_commands_are_refused_with_the_place_to_go) {
   expect_error(run("audit a.glb --each"), 2, {"there is no option '--each' here; it belongs to compare\n"});
   expect_error(run("bake a.glb --world -o b.glb"), 2,
                {"'--world' here; bake writes normals in the space of each mesh"});
-  expect_error(run("bake --base a.obj b.obj"), 2, {"'--base' here; write a .glb of the base"});
+  expect_error(run("bake --base a.obj b.obj"), 2,
+               {"'--base' here; bake reads targets only from a glTF file; write the base"});
 }
 
 TEST_F(Cli, colours_are_for_terminals) {

@@ -225,7 +225,8 @@ TEST_F(HostileCli, what_the_user_asks_for_is_announced_and_not_refused) {
   const std::string arguments = "sample --sample twist --times 0:0.00005:1 -o no/folder_%d.ply";
   const ProcessResult result = run(arguments);
   expect(result, 1,
-         {"chronormal sample: the result will be large: 20,001 moments with 7,700 normals each, which are 1.8 GB\n",
+         {"chronormal sample: the result will have 1.8 GB, for 20,001 moments with 7,700 normals each; to make it "
+          "smaller, give fewer moments\n",
           "cannot be written to"});
   EXPECT_EQ(run(arguments + " --quiet").err.find("GB"), std::string::npos);
 }
@@ -296,7 +297,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
     const auto words = arguments.find(" >") == std::string::npos
                            ? arguments + " --force"
                            : std::string(arguments).insert(arguments.find(" >"), " --force");
-    expect(run(words), 2, {"choose another file"});
+    expect(run(words), 2, {"choose another name"});
     for (std::size_t i = 0; i < inputs.size(); ++i)
       EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
   }

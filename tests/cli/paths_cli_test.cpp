@@ -81,8 +81,9 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   write_turn(0.3);
   const ProcessResult usual = run("inspect 'f*.obj' --path catmull-rom");
   EXPECT_NE(usual.err.find("catmull-rom paths: 4 segments cut into "), std::string::npos) << usual.err;
-  EXPECT_NE(usual.err.find("with normals within 0.01 degrees of the curves"), std::string::npos) << usual.err;
-  EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("with normals within 0.5 degrees"),
+  EXPECT_NE(usual.err.find("whose normals are within 0.01 degrees of those of the curves"), std::string::npos)
+      << usual.err;
+  EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("whose normals are within 0.5 degrees"),
             std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");

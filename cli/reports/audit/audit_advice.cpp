@@ -136,7 +136,8 @@ std::string original_words(const Audited& input) {
   if (!all_single && all_fitted)
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
-  if (!all_single) return baked + "since then they were changed, or --weighting differs; bake the ORIGINAL file again";
+  if (!all_single)
+    return baked + "they have changed since that bake, or --weighting differs; bake the ORIGINAL file again";
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
@@ -152,9 +153,10 @@ std::string advice(const Audited& input) {
       return formatted("\nnothing to do, since no error is larger than {}\n",
                        with_degrees(with_digits(limit_of(input), 6)));
     case Remedy::kUnknown:
-      return input.audit.error.cancelled > 0 ? "\nat some vertices the normals of faces cancel, so no vertex normal is "
-                                               "right; give each side of a sheet its own vertices\n"
-                                             : "\nnothing could be judged, since no face that moves has an area\n";
+      return input.audit.error.cancelled > 0 ? "\nat some vertices the normals of the faces cancel each other, so no "
+                                               "vertex normal is right;\ngive each side of a sheet its own vertices\n"
+                                             : "\nnothing could be judged, since no face that moves has an area; run "
+                                               "chronormal inspect to list faces without area\n";
     case Remedy::kTangents:
       if (!can_bake_tangents(input)) {
         return "\nthe normals are right, but the tangents are not; export tangents for all targets, or for none, so "

@@ -97,7 +97,7 @@ std::string group_words(const Audited& input, const Group& group) {
                        input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals", worst,
                        found.target ? "weight 1" : "keyframes");
     case Kind::kWrongBetween:
-      return formatted("{}: right at {}, with errors of up to {} degrees in between", who,
+      return formatted("{}: normals are right at {}, with errors of up to {} degrees in between", who,
                        found.target ? "weights 0 and 1" : "keyframes", worst);
     case Kind::kWrongTogether: {
       const double alone = worst_alone(input.audit, found);

@@ -88,8 +88,8 @@ std::string headline(const Audited& input) {
         formatted("  {} cannot be judged, since the faces there have almost no area\n", samples(audit.error.no_normal));
   if (audit.error.cancelled > 0)
     text += formatted(
-        "  {} of the samples cannot be judged because normals of faces cancel, as on a sheet whose sides share "
-        "vertices.\n  Such samples count as errors whatever --tolerance is. The first is at {}\n",
+        "  {} of the samples cannot be judged because the normals of faces cancel each other, as on a sheet "
+        "whose sides share\n  vertices. Such samples count as errors whatever --tolerance is. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text += formatted(
