@@ -13,7 +13,7 @@ constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
 Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> offsets,
                      std::span<const std::uint32_t> corners) {
   if (vertex_count > kMaxCount || corners.size() > kMaxCount)
-    return invalid_input("", "the mesh has more than 4,294,967,295 vertices or corners");
+    return invalid_input("", "the mesh has more than 4,294,967,295 vertices or corners; split the mesh");
   const std::size_t face_count = offsets.empty() ? corners.size() / 3 : offsets.size() - 1;
   for (std::size_t f = 0; f < face_count; ++f) {
     const std::size_t first = offsets.empty() ? 3 * f : offsets[f];

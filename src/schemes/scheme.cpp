@@ -12,7 +12,7 @@ namespace chronormal {
 namespace {
 
 constexpr std::array kDescriptions = {
-    SchemeDescription{"recompute", "compute positions at t and their cross product, in float32"},
+    SchemeDescription{"recompute", "the normal computed anew from the positions at t, in float32"},
     SchemeDescription{"polynomial", "the exact normal, a quadratic in t, then normalised"},
     SchemeDescription{"rational", "the exact normal, divided by the square root of its squared length"},
     SchemeDescription{"linear", "straight line between the unit end normals"},
@@ -21,16 +21,18 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"lagrange:K",
                       "polynomial of degree K through K + 1 exact unit normals, K = 1 to 64 (from about "
                       "K = 16 on, float32 limits the accuracy)"},
-    SchemeDescription{"linear:scaled", "straight line, with the length of one end chosen for the smallest error"},
+    SchemeDescription{"linear:scaled",
+                      "straight line, with the length of one end normal chosen for the smallest error"},
     SchemeDescription{"slerp", "shortest arc between the end normals"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},
     SchemeDescription{"quaternion:matrix", "quaternion slerp, frames by the matrix of the paper"},
-    SchemeDescription{"quaternion:edge", "quaternion slerp, tangent along the first edge"},
+    SchemeDescription{"quaternion:edge", "quaternion slerp, frames with the tangent along the first edge"},
     SchemeDescription{"quaternion:polar", "quaternion slerp, frames by polar decomposition"},
     SchemeDescription{"quaternion:random:SEED", "quaternion slerp, random frames (SEED default 1)"},
     SchemeDescription{"quaternion:optimal", "quaternion slerp, with the frames that give the smallest average error"},
-    SchemeDescription{"circle", "circle through the exact normal in the middle"},
-    SchemeDescription{"circle:timed", "the same circle, meeting the middle at t = 1/2"},
+    SchemeDescription{"circle", "circle through both end normals and the exact normal of t = 1/2, at constant speed"},
+    SchemeDescription{"circle:timed",
+                      "circle through both end normals and the exact normal of t = 1/2, met at that time"},
 };
 
 // The two parts of a scheme's name, "family:parameter". The parameter is empty if there is no colon.

@@ -67,13 +67,13 @@ struct WeightingInfo {
 
 /// All weightings, with their names and meanings. The first is the default.
 inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
-    {Weighting::kArea, "area", "the area of the face; the only one that is exact at every time"},
+    {Weighting::kArea, "area", "the area of the face; only this weighting is exact at every time"},
     {Weighting::kAngle, "angle", "the angle of the face at the vertex"},
     {Weighting::kUniform, "uniform", "all faces alike"},
     {Weighting::kAreaAngle, "area-angle", "area times angle"},
     {Weighting::kMax, "max", "the sine of the angle over the lengths of both edges (Max 1999)"},
     {Weighting::kInverseEdges, "inverse-edges", "the reciprocals of the lengths of both edges"},
-    {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
+    {Weighting::kInverseRoots, "inverse-roots", "the square roots of the reciprocals of the lengths of both edges"},
 }};
 
 /// The weightings that tools use for shading. If the weighting of stored normals is unknown, only these weightings are

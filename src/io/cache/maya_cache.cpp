@@ -26,12 +26,14 @@ class DescriptionReader {
 
   Result<MayaCacheDescription> read(std::string_view bytes) {
     constexpr std::size_t kLargest = std::size_t{1} << 24;
-    if (bytes.size() > kLargest) return error(kLargest, "the description of the Maya cache is larger than 16 MiB");
+    if (bytes.size() > kLargest)
+      return error(kLargest, "the description of the Maya cache is larger than 16 MiB; export the cache again");
     const pugi::xml_parse_result parsed = document_.load_buffer(bytes.data(), bytes.size());
     const pugi::xml_node root = document_.child("Autodesk_Cache_File");
     if (!parsed || !root)
       return error(parsed ? 0 : static_cast<std::size_t>(parsed.offset),
-                   parsed ? "this is not the description of a Maya cache, since it has no Autodesk_Cache_File"
+                   parsed ? "this is not the description of a Maya cache, since it has no element Autodesk_Cache_File; "
+                            "name the .xml file that Maya wrote"
                           : "the XML is not valid: " + std::string(parsed.description()));
 
     const pugi::xml_node type = root.child("cacheType");
@@ -90,9 +92,9 @@ class DescriptionReader {
         if (Status status = read_ticks(node, attribute, *ticks); !status) return status;
       }
       if (channel.step <= 0 || channel.start > channel.end)
-        return error(
-            node,
-            "a regular channel must have a SamplingRate greater than 0, and a StartTime not later than its EndTime");
+        return error(node,
+                     "a regular channel must have a SamplingRate greater than 0, and a StartTime not later than its "
+                     "EndTime; export the cache again");
     }
     description_.channels.push_back(std::move(channel));
     return Success{};
@@ -250,7 +252,7 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
     if (const std::optional<std::int64_t> ticks = find_missing(channel, cache))
       return invalid_input(name, "the sample at tick " + std::to_string(*ticks) + " is missing in the cache" +
                                      (described.has_file_per_frame
-                                          ? "; that file should be " +
+                                          ? "; copy its file here, which should be " +
                                                 frame_file(stem, described.extension, *ticks, described.ticks_per_frame)
                                           : ""));
   }

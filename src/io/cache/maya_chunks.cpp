@@ -34,9 +34,10 @@ class ChunkReader {
       if (Status status = read_chunk(at, bytes_.size(), group); !status) return status.error();
       if (group.tag != (is_wide_ ? "FOR8" : "FOR4"))
         return error(at, "the cache is damaged, since " + scan::quoted(group.tag) +
-                             " is where a group must begin; copy or export it again");
+                             " stands where a group must begin; copy or export the cache again");
       if (group.end - group.begin < kTagSize)
-        return error(at, "the cache is damaged, since this group has no name; copy or export it again");
+        return error(
+            at, "the cache is damaged, since the group that begins here has no name; copy or export the cache again");
       if (Status status = read_group(bytes_.substr(group.begin, kTagSize), group); !status) return status.error();
       // Unlike other chunks, groups have no padding.
       at = group.end;
@@ -71,7 +72,7 @@ class ChunkReader {
 
   [[nodiscard]] Status read_integer(const Chunk& chunk, std::int32_t& value) const {
     if (chunk.end - chunk.begin != sizeof value)
-      return error(chunk.begin, "the chunk " + scan::quoted(chunk.tag) + " must have 4 bytes");
+      return error(chunk.begin, "the chunk " + scan::quoted(chunk.tag) + " must have 4 bytes; export the cache again");
     value = binary::load<std::int32_t>(bytes_.data() + chunk.begin, kMayaOrder);
     return Success{};
   }
@@ -105,7 +106,7 @@ class ChunkReader {
         if (!channel || !has_count)
           return error(at,
                        "the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE); export "
-                       "it again");
+                       "the cache again");
         if (!time)
           return error(
               at, "the points have no time, since neither TIME nor STIM comes before them; export the cache again");

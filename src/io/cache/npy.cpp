@@ -111,7 +111,8 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
   const std::size_t text_begin = version == 1 ? 10 : 12;
   const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
                                              : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);
-  if (text_size > kLongestHeader) return error("the array header is longer than 65,536 bytes");
+  if (text_size > kLongestHeader)
+    return error("the array header is longer than 65,536 bytes; save the array again with numpy.save or numpy.savez");
   if (text_size > start.size() - text_begin)
     return error("the array is cut off inside its header; copy or save the file again");
 
@@ -128,7 +129,7 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
     if (!key || !header.sign(':')) return broken();
     if (*key == "descr" && !has_type) {
       const std::optional<std::string_view> type = header.string();
-      if (!type) return error("the array has records, but must have numbers");
+      if (!type) return error("the array has records instead of numbers; save it as float32, float64 or integers");
       if (!read_type(*type, allow_text, array))
         return error("elements of the type " + scan::quoted(*type) +
                      " cannot be read; save the array as float32, float64, or integers of up to 64 bits");

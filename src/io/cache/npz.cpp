@@ -159,7 +159,8 @@ Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const 
   if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3 || array.element_count() == 0)
     return invalid_input(place, "faces must be an array (faces, 3) of integers, but are " + array.text());
   constexpr std::uint64_t kMostCorners = std::numeric_limits<std::uint32_t>::max();
-  if (array.element_count() > kMostCorners) return invalid_input(place, "the mesh has more than 4,294,967,295 corners");
+  if (array.element_count() > kMostCorners)
+    return invalid_input(place, "the mesh has more than 4,294,967,295 corners; split the mesh");
   const auto faces = static_cast<std::size_t>(array.shape[0]), corners = static_cast<std::size_t>(array.shape[1]);
   std::vector<std::uint32_t> indices(faces * corners);
   std::optional<std::size_t> wrong;

@@ -30,9 +30,11 @@ Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, 
                                    binary::load<std::int32_t>(bytes.data() + 28, kPc2Order)};
   const double first = double{binary::load<float>(bytes.data() + 20, kPc2Order)};
   const double step = double{binary::load<float>(bytes.data() + 24, kPc2Order)};
-  if (!std::isfinite(first)) return invalid_input(binary::place(name, 20), "the start frame is NaN or infinite");
+  if (!std::isfinite(first))
+    return invalid_input(binary::place(name, 20), "the start frame is NaN or infinite; export the file again");
   if (!std::isfinite(step) || !(step > 0))
-    return invalid_input(binary::place(name, 24), "the sample rate, in frames, must be a number greater than 0");
+    return invalid_input(binary::place(name, 24),
+                         "the sample rate, in frames, must be a number greater than 0; export the file again");
   if (Status status = point_cache::check_counts(size, name, counts, kPc2HeaderSize, 0); !status) return status.error();
   CacheLayout layout = point_cache::layout_of(counts, kPc2HeaderSize, kPc2Order);
   for (std::size_t k = 0; k < layout.times.size(); ++k)

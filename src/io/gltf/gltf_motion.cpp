@@ -200,7 +200,9 @@ class Assembly {
       else
         result_.unread_skins.push_back(read.error());
     }
-    if (corners.empty()) return invalid_input(document_.name(), "the meshes have no faces, so they have no normals");
+    if (corners.empty())
+      return invalid_input(document_.name(),
+                           "the meshes have no faces, so they have no normals; export meshes with faces");
     Result<Topology> topology = Topology::triangles(vertex_count_, std::move(corners));
     if (!topology) return invalid_input(document_.name(), topology.error().text());
     result_.motion.topology = std::move(topology).value();
@@ -700,7 +702,9 @@ Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMoti
 Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options) {
   Assembly assembly(document, options);
   assembly.add_meshes([](std::size_t) { return true; });
-  if (assembly.empty()) return invalid_input(document.name(), "the file has no mesh with faces, so it has no normals");
+  if (assembly.empty())
+    return invalid_input(document.name(),
+                         "the file has no mesh with faces, so it has no normals; export a mesh with faces");
   if (Status status = assembly.check_memory(1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
   const auto default_weights = [&](std::size_t p) {

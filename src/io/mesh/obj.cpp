@@ -302,7 +302,7 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   // An index that does not fit into 32 bits is larger than the number of vertices. The check of largest_ at the end of
   // the file reports such an index.
   if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
-    return error("the mesh has more than 4,294,967,295 corners");
+    return error("the mesh has more than 4,294,967,295 corners; split the mesh");
   return Success{};
 }
 

@@ -51,13 +51,14 @@ class AsciiSource {
     return true;
   }
   [[nodiscard]] bool end_row() {
-    if (!next_.empty()) return fail(scan::quoted(next_) + " is one value more than the header declares for a row");
+    if (!next_.empty())
+      return fail(scan::quoted(next_) + " is one value more than the header declares for a row; export the file again");
     return true;
   }
 
   [[nodiscard]] bool skip(Scalar, std::uint64_t count) {
     for (; count > 0; --count) {
-      if (take().empty()) return fail("the row has fewer values than the header declares");
+      if (take().empty()) return fail("the row has fewer values than the header declares; export the file again");
     }
     return true;
   }
@@ -350,7 +351,7 @@ class BodyReader {
         return fail("corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
                     ", but the file has " + counted(vertex_count(), "vertex", "vertices"));
       if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
-        return fail("the mesh has more than 4,294,967,295 corners");
+        return fail("the mesh has more than 4,294,967,295 corners; split the mesh");
     }
     if (corner_count < 3) {
       faces_.drop_face();

@@ -299,11 +299,11 @@ struct Request {
 };
 
 constexpr Request kRequests[] = {
-    {SIGHUP, "stopped, since its terminal was closed (SIGHUP)"},
+    {SIGHUP, "the program was stopped, since its terminal was closed (SIGHUP)"},
     {SIGINT, "interrupted (SIGINT)"},
     {SIGQUIT, "stopped (SIGQUIT)"},
     {SIGTERM, "stopped (SIGTERM)"},
-    {SIGXCPU, "stopped, since it used more time than allowed (SIGXCPU)"},
+    {SIGXCPU, "the program was stopped, since it used more time than allowed (SIGXCPU)"},
 };
 
 // The functions that the signal handlers call. These functions are set before the handlers are installed.

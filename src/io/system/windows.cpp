@@ -482,7 +482,7 @@ Endings watched{};
 // own. Under Wine, the exit code would otherwise be 0.
 BOOL WINAPI end_by_request(DWORD event) {
   const bool is_key = event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT;
-  watched.by_request(is_key ? "interrupted (Ctrl-C)" : "ended, since its console was closed");
+  watched.by_request(is_key ? "interrupted (Ctrl-C)" : "the program was ended, since its console was closed");
   return ::TerminateProcess(::GetCurrentProcess(), STATUS_CONTROL_C_EXIT);
 }
 

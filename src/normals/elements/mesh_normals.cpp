@@ -566,7 +566,8 @@ Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte
   const Parts& parts = *parts_;
   if (!parts.curves.keeps_lengths || parts.curves.size == 0)
     return Error{ErrorCode::kUsage, "",
-                 "a vertex buffer can only be filled after set_segment(), and only if make() got a tolerance of 1e-6"};
+                 "a vertex buffer can only be filled after set_segment(), and only if make() got a tolerance of 1e-6; "
+                 "call set_segment() first, or make() with 1e-6"};
   const std::size_t each = bytes_of(format);
   if (bytes.size() != size() * each)
     return Error{ErrorCode::kUsage, "bytes",

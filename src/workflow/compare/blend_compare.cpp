@@ -399,7 +399,10 @@ std::string_view name_of(BlendDeltas deltas) noexcept { return kNames[static_cas
 
 Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options) {
   if (const Status status = check(options); !status) return status.error();
-  if (!options.animation.empty()) return misuse("", "this input has no animations; only glTF files do");
+  if (!options.animation.empty())
+    return misuse("",
+                  "this input has no animations, since only glTF files can have them; give a glTF file, or leave "
+                  "--animation out");
   if (star.kind != MotionKind::kTargets)
     return misuse("", "this input has no morph targets to blend, since it is a sequence of keyframes");
   Result<BlendSet> set = blend_set_of(star);

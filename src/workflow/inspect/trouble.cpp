@@ -104,14 +104,15 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface(
       "non_manifold_edge", surface.non_manifold_edges,
       have(edges(surface.non_manifold_edges.count), surface.non_manifold_edges.count) + " more than two faces",
-      "a vertex normal there is the sum over all sheets that meet; split the vertices to keep the sheets apart");
+      "a vertex normal there is the sum over all sheets that meet at the edge; split the vertices to keep the sheets "
+      "apart");
   troubles.on_surface("turned_edge", surface.turned_edges,
                       edges(surface.turned_edges.count) + " between faces whose corners run in opposite orders",
-                      "their normals point to opposite sides and cancel in vertex normals; flip such faces");
+                      "their normals point to opposite sides and cancel each other in vertex normals; flip such faces");
   troubles.on_surface(
       "back_to_back", surface.back_to_back,
       counted(surface.back_to_back.count, "pair of faces", "pairs of faces") + " on the same vertices, back to back",
-      "their normals cancel in vertex normals; give each side vertices of its own");
+      "their normals cancel each other in vertex normals; give each side vertices of its own");
   troubles.on_surface(
       "doubled_face", surface.doubled_faces,
       have(faces(surface.doubled_faces.count), surface.doubled_faces.count) + " the vertices of another face",
@@ -122,7 +123,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
       "a triangle then has no area, and a larger face counts twice in the vertex normal");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
                       "commands that need triangles cut such a face into triangles that do not overlap");
-  std::string meaning = "shading has a seam there, unless such vertices are taken as one point";
+  std::string meaning = "shading has a seam there, unless such vertices share a normal, as they do without --no-weld";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning = "shading has a seam there; " + counted(split, "of them is a hard edge", "of them are hard edges") +
               " in the stored normals too";

@@ -70,7 +70,7 @@ QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& win
        {"points", "points", count(inside.size())},
        {"inside", "points that are inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
        {"crossings", "times a point crosses the surface", count(all.size())},
-       {"inward", "times a point crosses it inward", count(std::count(inward.begin(), inward.end(), 1))}},
+       {"inward", "times a point crosses the surface inward", count(std::count(inward.begin(), inward.end(), 1))}},
       {{"crossing",
         "crossings, by point and time",
         {{"point", std::move(points)},
@@ -129,7 +129,8 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   const std::size_t at_start = motion.segments[parts.value().empty() ? 0 : parts.value().front().segment].from;
   if (is_inside_out(motion.topology, motion.keyframes[at_start].positions))
     answer.facts.push_back(
-        {"inside_out", "mesh is inside out, so its normals point inward, and crossings called inward go out", 1});
+        {"inside_out",
+         "mesh that is inside out: its normals point inward, and the crossings that are called inward go outward", 1});
   return answer;
 }
 

@@ -205,8 +205,8 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
       {{"segments", "segments examined", count(parts.value().size())},
        {all, all + " in each segment", count(asked)},
        {"always_front", "times a " + one + " shows its front during a whole segment", count(always_front)},
-       {"always_back", "times it shows its back during a whole segment", count(always_back)},
-       {"changing", "times it changes sides, or is seen edge-on at an instant",
+       {"always_back", "times a " + one + " shows its back during a whole segment", count(always_back)},
+       {"changing", "times a " + one + " changes sides, or is seen edge-on at an instant",
         count(pairs - always_front - always_back)}},
       {}};
   answer.tables.push_back(table_of("", "intervals that show the front", {{one, std::move(numbers)}}, std::move(when)));

@@ -181,10 +181,14 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
   if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
-    answer.facts.push_back(
-        {"span_mean_ends_off", "degrees, average of such angles for one exposure of the whole time", mean_off(whole)});
-    answer.facts.push_back(
-        {"span_largest_ends_off", "degrees, largest such angle for one exposure of the whole time", whole.largest_off});
+    answer.facts.push_back({"span_mean_ends_off",
+                            "degrees, average angle between the average normal over the whole time and the bisector of "
+                            "the normals at its ends",
+                            mean_off(whole)});
+    answer.facts.push_back({"span_largest_ends_off",
+                            "degrees, largest angle between the average normal over the whole time and the bisector of "
+                            "the normals at its ends",
+                            whole.largest_off});
     answer.tables.push_back(
         std::move(whole).table("span", "average normals over the whole time", elements.kind, false));
   }

@@ -162,7 +162,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
     if (after < before)
       note((is_sequence ? grouped(after) + " of " + counted(before, "keyframe", "keyframes")
                         : grouped(after - 1) + " of " + counted(before - 1, "target", "targets")) +
-           " can be shown here, among them the worst; the plot has the errors of all.");
+           " can be shown here, among them the worst one; the plot has the errors of all of them.");
   }
   if (const std::size_t all = bytes_of(model), of_samples = sum(model, bytes_of_samples);
       all > most_bytes && of_samples > 0) {
@@ -170,8 +170,8 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
     const std::size_t step = (of_samples + most - 1) / most;
     if (step > 1) {
       thin_samples(model, step);
-      note("Only one of " + counted(step, "sample", "samples") +
-           " of a motion can be shown here, and those of the worst places.");
+      note("Only one of every " + counted(step, "sample", "samples") +
+           " of a motion can be shown here, beside those of the worst places.");
     }
   }
   if (const std::size_t all = bytes_of(model); all > most_bytes) {
@@ -184,8 +184,9 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
       note((part.name.empty() ? std::string("The mesh") : printable(part.name)) + " is shown with " +
            grouped((part.triangles.size() + part.coarse.size()) / 3) + " of " +
            counted(before, "triangle", "triangles") + "; " +
-           counted(part.triangles.size() / 3, "of them, around the worst places, is as in the file and has errors.",
-                   "of them, around the worst places, are as in the file and have errors."));
+           counted(part.triangles.size() / 3,
+                   "of them, around the worst places, is as in the file and shows its errors.",
+                   "of them, around the worst places, are as in the file and show their errors."));
     }
   }
 }

@@ -66,7 +66,7 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
             "a.mc, byte 0: this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
   EXPECT_EQ(error_with(writer.chunk("FVCA", ""), writer.header(0)),
             "a.mc, byte 60: the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE); "
-            "export it again");
+            "export the cache again");
   EXPECT_EQ(
       error_with(writer.points<float>("a", {1, 2, 3}), ""),
       "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them; export the cache again");
@@ -79,7 +79,8 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
                  writer.header(0)),
       "a.mc, byte 84: the number of points of the channel 'a' is 1, which does not fit its 12 bytes; export the cache "
       "again");
-  EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""), "a.mc, byte 20: the chunk 'TIME' must have 4 bytes");
+  EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""),
+            "a.mc, byte 20: the chunk 'TIME' must have 4 bytes; export the cache again");
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
                        writer.header(0)),
@@ -120,15 +121,17 @@ TEST(ReadMayaDescription, errors_say_where_and_what) {
   };
   EXPECT_NE(error_with("Autodesk_Cache_File", "x").find("c.xml, byte "), std::string::npos);
   EXPECT_EQ(error_text(read_maya_description("<a/>", "c.xml")),
-            "c.xml, byte 0: this is not the description of a Maya cache, since it has no Autodesk_Cache_File");
+            "c.xml, byte 0: this is not the description of a Maya cache, since it has no element Autodesk_Cache_File; "
+            "name the .xml file that Maya wrote");
   EXPECT_NE(error_with("OneFile", "TwoFiles").find("Type of cacheType is 'TwoFiles'"), std::string::npos);
   EXPECT_NE(error_with("mcc", "abc").find("Format of cacheType is 'abc'"), std::string::npos);
   EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be greater than 0"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate greater than 0"), std::string::npos);
-  EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not later than its EndTime"), std::string::npos);
+  EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not later than its EndTime; export the cache again"),
+            std::string::npos);
   EXPECT_EQ(error_text(read_maya_description(std::string((std::size_t{1} << 24) + 1, ' '), "c.xml")),
-            "c.xml, byte 16777216: the description of the Maya cache is larger than 16 MiB");
+            "c.xml, byte 16777216: the description of the Maya cache is larger than 16 MiB; export the cache again");
 }
 
 TEST(ReadMayaCache, reads_one_file) {
@@ -170,8 +173,9 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
             "c.xml: the files of the cache are missing; they should be in the same folder, named like cFrame0.mc");
   folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
   folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
-  EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
-            "c.xml: the sample at tick -125 is missing in the cache; that file should be cFrame-1Tick125.mc");
+  EXPECT_EQ(
+      error_text(read_maya_cache(folder / "c.xml")),
+      "c.xml: the sample at tick -125 is missing in the cache; copy its file here, which should be cFrame-1Tick125.mc");
   folder.write("cFrame-1Tick125.mc", frame_bytes(false, -125, test::kTurning[0]));
   EXPECT_TRUE(read_maya_cache(folder / "c.xml").ok());
   folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));

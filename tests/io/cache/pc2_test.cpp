@@ -41,10 +41,11 @@ TEST(ReadPc2, errors_say_where_and_what) {
   EXPECT_EQ(error_of("POINTCACHE3"),
             "walk.pc2, byte 0: this is not a PC2 file, since it does not begin with POINTCACHE2");
   EXPECT_EQ(error_of(patched(12, "\2")), "walk.pc2, byte 12: version 2 of PC2 cannot be read; only version 1 can");
-  EXPECT_EQ(error_of(patched(20, "\0\0\xC0\x7F"s)), "walk.pc2, byte 20: the start frame is NaN or infinite");
+  EXPECT_EQ(error_of(patched(20, "\0\0\xC0\x7F"s)),
+            "walk.pc2, byte 20: the start frame is NaN or infinite; export the file again");
   for (const std::string& step : {"\0\0\0\0"s, "\0\0\x80\xBF"s, "\0\0\x80\x7F"s})
     EXPECT_EQ(error_of(patched(24, step)),
-              "walk.pc2, byte 24: the sample rate, in frames, must be a number greater than 0");
+              "walk.pc2, byte 24: the sample rate, in frames, must be a number greater than 0; export the file again");
   EXPECT_EQ(
       error_of(patched(16, "\0"s)),
       "walk.pc2, byte 32: the number of vertices is 0 and the number of samples is 2, but both must be at least 1");

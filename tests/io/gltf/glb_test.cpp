@@ -51,10 +51,12 @@ TEST(ReadGlb, errors_say_where_and_what) {
   EXPECT_EQ(error_of(glb(json + word(9) + kBin)),
             "a.glb, byte 24: chunk 1 should have 9 bytes, but only 0 are left in the file; copy or export it again");
   EXPECT_EQ(error_of(glb(chunk("JSON", "{} ") + " ")), "a.glb, byte 12: the length of chunk 0 must be a multiple of 4");
-  EXPECT_EQ(error_of(glb(chunk(kBin, "") + json)), "a.glb, byte 16: the first chunk must be JSON, but it is not");
-  EXPECT_EQ(error_of(glb(json + json)), "a.glb, byte 28: the file has a second JSON chunk, but may have only one");
+  EXPECT_EQ(error_of(glb(chunk(kBin, "") + json)),
+            "a.glb, byte 16: the first chunk must be JSON, but has another type; export the file again");
+  EXPECT_EQ(error_of(glb(json + json)),
+            "a.glb, byte 28: the file has a second JSON chunk, but may have only one; export it again");
   EXPECT_EQ(error_of(glb(json + chunk("more", "") + chunk(kBin, ""))),
-            "a.glb, byte 36: the BIN chunk must be the second chunk, right after JSON");
+            "a.glb, byte 36: the BIN chunk must be the second chunk, right after JSON; export the file again");
 }
 
 }  // namespace

@@ -501,7 +501,8 @@ TEST(GltfTargets, of_meshes_without_a_whole_face_are_no_motion) {
   auto& primitive = builder.json["meshes"][0]["primitives"][0];
   primitive["mode"] = 5;
   primitive["indices"] = builder.add_indices(std::vector<std::uint16_t>{0, 1});
-  EXPECT_EQ(error_of(builder).text(), "a.gltf: the meshes have no faces, so they have no normals");
+  EXPECT_EQ(error_of(builder).text(),
+            "a.gltf: the meshes have no faces, so they have no normals; export meshes with faces");
 }
 
 }  // namespace

@@ -212,10 +212,10 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
          s.joints(
              s.builder.add_accessor("VEC4", std::vector<std::uint8_t>{0, 1, 9, 9, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0}));
        }},
-      {attributes + "/JOINTS_0: accessor 5 has a componentType that is not allowed for this use",
+      {attributes + "/JOINTS_0: accessor 5 has a componentType that glTF does not allow for this use",
        [](Skinned& s) { s.joints(5); }},
       {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
-      {attributes + "/WEIGHTS_0: accessor 4 has a componentType that is not allowed for this use",
+      {attributes + "/WEIGHTS_0: accessor 4 has a componentType that glTF does not allow for this use",
        [](Skinned& s) { s.weights(4); }},
       {attributes + "/WEIGHTS_0: the accessor has 1 element, but the primitive has 4 positions",
        [](Skinned& s) {
@@ -270,7 +270,8 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["channels"][0]["target"]["node"] = 9;
        }},
-      {"a.gltf, /accessors/6: the time of key 1 is not later than the time of the key before",
+      {"a.gltf, /accessors/6: the time of key 1 is not later than the time of the key before; export the animation "
+       "again",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["samplers"][0]["input"] = 6;

@@ -272,17 +272,20 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
   EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite");
   // The numbers of a row may continue in the next line. If a row has one number too few, the reader therefore finds the
   // error only in the next line.
-  EXPECT_EQ(with("1 0 0", "1 0"),
-            "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row");
-  EXPECT_EQ(with("1 0 0", "1 0 0 0"),
-            "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row");
+  EXPECT_EQ(
+      with("1 0 0", "1 0"),
+      "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row; export the file again");
+  EXPECT_EQ(
+      with("1 0 0", "1 0 0 0"),
+      "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row; export the file again");
   EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large for float32");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
             "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
             "walk.ply, line 14, face 0: corner 1 refers to vertex -1, but the file has 4 vertices");
-  EXPECT_EQ(with("4 0 1", "2 0 1"),
-            "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row");
+  EXPECT_EQ(
+      with("4 0 1", "2 0 1"),
+      "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row; export the file again");
   EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has a negative length, -4");
   EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"), "walk.ply, line 14, face 0: '1.0' is not a number");
   EXPECT_EQ(error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, "4 0 1 2 3\n", "          ")),

@@ -91,11 +91,11 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
   const std::string pointer = pointer_to("buffers", index), uri_place = place(pointer + "/uri");
   if (!declared.uri) {
     if (index != 0 || !origin_.bin)
-      return invalid_input(
-          place(pointer),
-          index == 0 ? "the data of this buffer are missing, since the buffer has no uri and the file has no BIN chunk"
-                     : "the data of this buffer are missing, since the buffer has no uri and only buffer 0 may use the "
-                       "BIN chunk");
+      return invalid_input(place(pointer), index == 0
+                                               ? "the data of this buffer are missing, since the buffer has no uri and "
+                                                 "the file has no BIN chunk; export the file again"
+                                               : "the data of this buffer are missing, since the buffer has no uri and "
+                                                 "only buffer 0 may use the BIN chunk; export the file again");
     if (origin_.bin->size() < declared.byte_length)
       return invalid_input(place(pointer + "/byteLength"), "the BIN chunk has only " +
                                                                counted(origin_.bin->size(), "byte", "bytes") +
@@ -103,7 +103,7 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
     if (origin_.bin->size() - declared.byte_length > 3)
       return invalid_input(place(pointer + "/byteLength"),
                            "the BIN chunk has " + counted(origin_.bin->size(), "byte", "bytes") +
-                               ", but may have at most 3 bytes more than byteLength says");
+                               ", but may have at most 3 bytes more than byteLength says; export the file again");
     return origin_.bin->substr(0, declared.byte_length);
   }
   if (is_data_uri(*declared.uri)) {
@@ -277,7 +277,8 @@ Result<std::vector<float>> Bytes::times(std::size_t index) {
   for (std::size_t k = 1; k < times.value().size(); ++k) {
     if (!(times.value()[k - 1] < times.value()[k]))
       return invalid_input(accessor_place(index),
-                           "the time of key " + std::to_string(k) + " is not later than the time of the key before");
+                           "the time of key " + std::to_string(k) +
+                               " is not later than the time of the key before; export the animation again");
   }
   return times;
 }
@@ -292,8 +293,10 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
   const std::uint32_t restart = restart_index(accessor.component);
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (result[i] == restart)
-      return invalid_input(accessor_place(index), "index " + std::to_string(i) + " is " + std::to_string(restart) +
-                                                      ", which means primitive restart and is not allowed in glTF");
+      return invalid_input(
+          accessor_place(index),
+          "index " + std::to_string(i) + " is " + std::to_string(restart) +
+              ", which means primitive restart and is not allowed in glTF; export the mesh as plain triangles");
     if (result[i] >= vertex_count)
       return invalid_input(accessor_place(index), "index " + std::to_string(i) + " refers to vertex " +
                                                       std::to_string(result[i]) + ", but the primitive has only " +

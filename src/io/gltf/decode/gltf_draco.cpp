@@ -107,7 +107,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
-  std::string reason = "there is no triangle mesh in them";
+  std::string reason = "there is no triangle mesh in them; export the file again";
   try {
     if (const auto faces = declared_faces(buffer)) {
       if (Status status = expansion.check(kBytesPerFace * *faces, place); !status) return status.error();

@@ -41,14 +41,15 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
                            " in the file; copy or export it again");
     if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " must be a multiple of 4");
     if ((chunk == 0) != (type == kJson))
-      return error(at + 4, chunk == 0 ? "the first chunk must be JSON, but it is not"
-                                      : "the file has a second JSON chunk, but may have only one");
+      return error(at + 4, chunk == 0 ? "the first chunk must be JSON, but has another type; export the file again"
+                                      : "the file has a second JSON chunk, but may have only one; export it again");
     if (type == kJson) {
       chunks.json = bytes.substr(begin, size);
       chunks.json_offset = begin;
       chunks.rest = bytes.substr(begin + size);
     } else if (type == kBin) {
-      if (chunk != 1) return error(at + 4, "the BIN chunk must be the second chunk, right after JSON");
+      if (chunk != 1)
+        return error(at + 4, "the BIN chunk must be the second chunk, right after JSON; export the file again");
       chunks.bin = bytes.substr(begin, size);
       chunks.rest = bytes.substr(begin + size);
     }

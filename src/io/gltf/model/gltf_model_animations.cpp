@@ -276,7 +276,7 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
     return false;
   }
   if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {
-    sampler.complain("input", "a cubic spline needs at least two keys");
+    sampler.complain("input", "a cubic spline needs at least two keys; add a key, or choose LINEAR");
     return false;
   }
   source.input = *input;

@@ -293,7 +293,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
       fits = is_one_of(accessor.component, {kUint8, kUint16, kUint32}) && !accessor.normalized;
       break;
   }
-  if (!fits) return complain("has a componentType that is not allowed for this use");
+  if (!fits) return complain("has a componentType that glTF does not allow for this use");
 
   if (compressed) return;  // the decoded data are checked later
   if (accessor.view) check_inside_view(object, key, index, use);
@@ -323,7 +323,7 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
     return complain("must begin at a multiple of " + counted(alignment, "byte", "bytes") +
                     ", the size of its components");
   if (is_attribute && (accessor.offset % 4 != 0 || stride % 4 != 0))
-    return complain("must have its elements at multiples of 4 bytes, as an attribute of vertices");
+    return complain("must have its elements at multiples of 4 bytes, since it is an attribute of vertices");
   if (stride < size)
     return complain("has elements of " + counted(size, "byte", "bytes") + ", more than the byteStride of " +
                     number(stride));

@@ -326,9 +326,9 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
     warnings.push_back("--encode " + std::string(name_of(encoding)) + " can look wrong in " + titles +
                        "; use --encode harmless for these viewers");
   if (without_room > 0)
-    warnings.push_back(
-        std::to_string(without_room) + (without_room == 1 ? " normal turns" : " normals turn") +
-        " so far from keyframe 0 that compressors change such normals; check the compressed file with audit");
+    warnings.push_back(std::to_string(without_room) + (without_room == 1 ? " normal turns" : " normals turn") +
+                       " so far from keyframe 0 that compressors change such normals; check the compressed file with "
+                       "chronormal audit");
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
       warnings.push_back(counted(targets, "target is", "targets are") + " too many for " + std::string(viewer.title) +

@@ -89,7 +89,7 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
   if (error < std::numbers::pi) return;
   warnings.push_back({label_of(mesh, baked),
                       "normals may be wrong between some keys of an animation, since these keys are too close or their "
-                      "weights too large for float32"});
+                      "weights too large for float32; move such keys apart, or use smaller weights"});
 }
 
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
@@ -97,9 +97,10 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
   const std::string tolerance = rounded_text(options.tolerance.value_or(kHarmlessTolerance));
   const std::string within = with_degrees(tolerance);
   if (baked.left_tangents > 0) {
-    warnings.push_back({label_of(mesh, baked),
-                        "the tangents of " + counted(baked.left_tangents, "target", "targets") +
-                            " no longer fit the new normals, because --max-bytes leaves no room for new tangents"});
+    warnings.push_back(
+        {label_of(mesh, baked),
+         "the tangents of " + counted(baked.left_tangents, "target", "targets") +
+             " no longer fit the new normals, because --max-bytes leaves no room for new tangents; allow more bytes"});
   }
   const auto chosen =
       std::find_if(baked.candidates.begin(), baked.candidates.end(), [](const auto& c) { return c.chosen; });
@@ -120,7 +121,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
   if (baked.already_baked) {
     warnings.push_back({label_of(mesh, baked), "this mesh was baked before, and errors reach " +
                                                    with_degrees(rounded_text(rounded_up(chosen->played.worst))) +
-                                                   " in its animations, beyond the tolerance of " + tolerance +
+                                                   " in its animations, beyond the tolerance of " + within +
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
@@ -147,7 +148,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
   if (!plan.is_driven && is_harmless && baked.extras.empty() && !baked.has_lone_weight) {
     warn(options.is_posed ? "no animation drives the targets, and correction targets would not improve the given "
-                            "poses; each target is right at weight 1"
+                            "poses; the normals of each target are right at weight 1"
                           : "no animation drives the targets, so the file is only right at rest and with one slider at "
                             "a time; if a program mixes several sliders, add --poses, and let the program drive the "
                             "correction targets (as chronormal/three, /babylon and /playcanvas do)");
@@ -155,7 +156,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn(
         "weights of the animations are so large that float32 cannot hold their products, so there are no correction "
-        "targets");
+        "targets; use smaller weights to get them");
   }
   if (baked.has_lone_weight && (is_harmless || plan.encoding == BakeEncoding::kSmallest)) {
     warn(
@@ -174,7 +175,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.undriven > 0) {
     warn("no animation moves " + counted(baked.undriven, "target", "targets") +
-         "; where a program sets such a weight by itself, the normals are only approximately right");
+         "; if a program sets their weights, the normals are only approximately right");
   }
   if (!baked.unmarked_nodes.empty()) {
     const std::size_t more = baked.unmarked_nodes.size() - 1;
@@ -204,7 +205,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.without_base > 0) {
     warn(counted(baked.without_base, "vertex has", "vertices have") +
-         " only faces without area in the base; normals there are wrong at weights near 0 and right otherwise");
+         " only faces without area in the base, so normals there are wrong at weights near 0; give such faces an area "
+         "to avoid this");
   }
   // Warns of viewers with few attributes. Each target morphs two attributes. The viewers that options can name support
   // more attributes, but other viewers may support only kMorphedAttributes.
