@@ -67,7 +67,7 @@ def before_export(export_settings: dict[str, Any]) -> None:
         return
     module = writer()
     if module is None:
-        say("WARNING", "Normals were not corrected: this version of the glTF exporter is unknown to the add-on. Your plain "
+        say("WARNING", "Normals were not corrected: the add-on does not know this version of the glTF exporter. Your plain "
                        "export was kept; correct it with the program: chronormal bake FILE")
         return
     original = getattr(module, _WRITE)
@@ -93,7 +93,8 @@ def _bake_or_say_why(path: Path) -> tuple[str, str]:
     try:
         return bake_in_place(path)
     except Exception as error:  # pylint: disable=broad-except
-        return "WARNING", f"Normals were not corrected; your plain export was kept. {type(error).__name__}: {error}"
+        return "WARNING", ("Normals were not corrected; your plain export was kept. Please report this error of the add-on: "
+                           f"{type(error).__name__}: {error}")
 
 
 def bake_in_place(path: Path) -> tuple[str, str]:
@@ -114,7 +115,7 @@ def verdict(report: dict[str, Any]) -> str:
     """Turns the report of `chronormal bake --json` into a sentence."""
     meshes = report.get("meshes", [])
     if meshes and all(mesh["already_baked"] for mesh in meshes):
-        return "Nothing was changed, since this file was baked before."
+        return "Nothing was changed, since this file was baked before. Export the original model to bake it anew."
     if not report.get("changed"):
         return "Normals are right already, so nothing was changed." if meshes else "The file has no shape keys, so nothing was changed."
     audit = report.get("audit")
@@ -132,7 +133,8 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     layout.use_property_decorate = False
     try:
         program.find(settings.program_path())
-        reason = "" if writer() else "This glTF exporter is unknown to the add-on."
+        reason = "" if writer() else ("The add-on does not know this version of the glTF exporter. Correct exported files "
+                                      "with the program: chronormal bake FILE")
     except program.Unavailable as error:
         reason = str(error)
     if reason:
@@ -144,7 +146,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "If no viewer is chosen: right in the first four, no worse in the other two")
+        _hint(column, "If no viewer is chosen, normals are right in the first four and no worse in the other two")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")

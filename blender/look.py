@@ -193,7 +193,7 @@ class State(bpy.types.PropertyGroup):
                ("BAKED", "Corrected", "The file with right normals, by the settings of the export panel")],
     )
     top: bpy.props.FloatProperty(
-        name="Darkest at", description="The error in degrees that has the last colour",
+        name="Darkest at", description="The error, in degrees, that is shown in the last colour of the scale",
         min=0.01, max=180, soft_min=1, soft_max=90, default=10, precision=1, update=_repaint,
     )
     findings: bpy.props.CollectionProperty(type=Finding)
@@ -311,7 +311,7 @@ class CHRONORMAL_OT_look(_Looking, bpy.types.Operator):
     over: bpy.props.EnumProperty(
         name="Over",
         items=[("NOW", "The sliders now", "The shape keys at their current values"),
-               ("TIME", "The timeline", "All frames of the timeline: the worst error of each corner"),
+               ("TIME", "The timeline", "The worst error of each corner over all frames of the timeline"),
                ("KEYS", "Keys and pairs", "Each key by itself, and pairs of keys that turn the same normals")],
     )
 
@@ -342,7 +342,7 @@ class CHRONORMAL_OT_jump(_Looking, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         state, o = context.window_manager.chronormal, context.object
         if o.name != state.object or not 0 <= self.index < len(state.findings):
-            self.report({"WARNING"}, "This list is about another object: check this one first.")
+            self.report({"WARNING"}, "This list is about another object. Check the selected object first.")
             return {"CANCELLED"}
         state.active = self.index
         finding = state.findings[self.index]

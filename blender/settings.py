@@ -40,7 +40,7 @@ class Preferences(bpy.types.AddonPreferences):
     )
     tolerance: bpy.props.FloatProperty(
         name="Tolerance",
-        description="The largest error in degrees. At 0 the file stays at most 2.5 times as large, whatever error that leaves",
+        description="The largest error allowed, in degrees. At 0, errors get as small as a file of at most 2.5 times the size permits",
         min=0, max=180, soft_max=5, precision=2, default=0,
     )
     most_targets: bpy.props.IntProperty(

@@ -143,11 +143,11 @@ def read(path: Path) -> Shown:
     document, binary = _chunks(path.read_bytes())
     arrays = _Arrays(document, binary)
     if not document.get("meshes"):
-        raise Unreadable("The exporter wrote no mesh.")
+        raise Unreadable("The exporter wrote no mesh. Check that the object has faces.")
     mesh = document["meshes"][0]
     primitives = [p for p in mesh["primitives"] if p.get("mode", 4) == 4 and "NORMAL" in p["attributes"]]
     if not primitives or not primitives[0].get("targets"):
-        raise Unreadable("The exporter wrote no shape keys.")
+        raise Unreadable("The exporter wrote no shape keys. Check that the mesh has faces and keys that are not muted.")
 
     def whole(key: str) -> numpy.ndarray:
         return numpy.concatenate([arrays.read(p["attributes"][key]) for p in primitives])

@@ -67,7 +67,7 @@ constexpr std::size_t kPacked = 3 * sizeof(float);
 template <class T>
 Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, const char* place) {
   if (count == 0) return VectorView<T>{};
-  if (data == nullptr) return Error{ErrorCode::kUsage, place, "the pointer is NULL"};
+  if (data == nullptr) return Error{ErrorCode::kUsage, place, "the pointer is NULL; pass a valid pointer"};
   if (stride == 0) stride = kPacked;
   if (stride % sizeof(float) != 0) return Error{ErrorCode::kUsage, place, "the stride must be a multiple of 4 bytes"};
   if (stride < kPacked)
@@ -84,12 +84,13 @@ Result<VectorView<float>> view_of(const chronormal_result& result, std::size_t c
 }
 
 Result<Topology> topology_of(const chronormal_mesh* mesh) {
-  if (mesh == nullptr) return Error{ErrorCode::kUsage, "mesh", "the pointer is NULL"};
+  if (mesh == nullptr) return Error{ErrorCode::kUsage, "mesh", "the pointer is NULL; pass a valid pointer"};
   if (mesh->face_count == 0) return invalid_input("mesh", "the mesh has no faces");
-  if (mesh->corners == nullptr) return Error{ErrorCode::kUsage, "mesh.corners", "the pointer is NULL"};
+  if (mesh->corners == nullptr)
+    return Error{ErrorCode::kUsage, "mesh.corners", "the pointer is NULL; pass a valid pointer"};
   if (mesh->offsets == nullptr) {
     if (mesh->face_count > std::numeric_limits<std::size_t>::max() / (3 * sizeof(std::uint32_t)))
-      return invalid_input("mesh.face_count", "the number of faces is larger than memory can hold");
+      return invalid_input("mesh.face_count", "the number of faces is larger than memory can hold; check face_count");
     return Topology::triangles(mesh->vertex_count, {mesh->corners, mesh->corners + 3 * mesh->face_count});
   }
   const std::span<const std::uint32_t> offsets(mesh->offsets, mesh->face_count + 1);
@@ -144,7 +145,7 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
 // normals that are packed into four bytes each. Returns the number of zero normals, as write() does. Errors: kUsage.
 template <class Write>
 Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, const Write& write) {
-  if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
+  if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL; pass a valid pointer"};
   if (const Status status = check_size(*given, "output"); !status) return status.error();
   const IndexRange range{given->first, given->count};
   if (range.first > size || (range.count != CHRONORMAL_ALL && range.count > size - range.first))
@@ -157,9 +158,10 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
   if (given->format != CHRONORMAL_OCTAHEDRAL && given->format != CHRONORMAL_RGB10A2)
     return Error{ErrorCode::kUsage, "output.format",
                  "the format must be float32 (0), octahedral (1) or 10-10-10-2 (2)"};
-  if (given->data == nullptr && size > 0) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
+  if (given->data == nullptr && size > 0)
+    return Error{ErrorCode::kUsage, "output", "the pointer is NULL; pass a valid pointer"};
   if (given->stride != 0 && given->stride != sizeof(std::uint32_t))
-    return Error{ErrorCode::kUsage, "output.stride", "the stride of normals of 4 bytes must be 0 or 4"};
+    return Error{ErrorCode::kUsage, "output.stride", "the stride of packed normals must be 0 or 4 bytes"};
   if (given->format == CHRONORMAL_OCTAHEDRAL)
     return write(std::span(static_cast<Octahedral*>(given->data), size), range);
   return write(std::span(static_cast<Rgb10A2*>(given->data), size), range);
@@ -202,7 +204,7 @@ void chronormal_output_init(chronormal_output* output, void* data) {
 
 chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from, chronormal_vectors to,
                                            const chronormal_options* options, chronormal_curves** result) {
-  if (result == nullptr) return misuse("result", "the pointer is NULL");
+  if (result == nullptr) return misuse("result", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
@@ -221,7 +223,7 @@ chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronorm
 }
 
 chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_vectors from, chronormal_vectors to) {
-  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const std::size_t vertices = curves->curves.topology().vertex_count();
     const auto first = view_of(from, vertices, "from"), last = view_of(to, vertices, "to");
@@ -240,7 +242,7 @@ size_t chronormal_curves_bytes(const chronormal_curves* curves) {
 
 chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t, chronormal_result normals,
                                                  size_t* zeros) {
-  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const auto view = view_of(normals, curves->curves.size());
     if (!view) return fail(view.error());
@@ -252,9 +254,9 @@ chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, doub
 
 chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                           const chronormal_output* outputs, size_t count, size_t* zeros) {
-  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
-  if (count > 0 && times == nullptr) return misuse("times", "the pointer is NULL");
-  if (count > 0 && outputs == nullptr) return misuse("outputs", "the pointer is NULL");
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL; pass a valid pointer");
+  if (count > 0 && times == nullptr) return misuse("times", "the pointer is NULL; pass a valid pointer");
+  if (count > 0 && outputs == nullptr) return misuse("outputs", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const MeshNormals& normals = curves->curves;
     const auto write = [&](std::size_t k, bool is_real) {
@@ -276,12 +278,12 @@ chronormal_status chronormal_curves_write(const chronormal_curves* curves, const
 
 chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t, chronormal_vectors normals,
                                            float* degrees) {
-  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const std::size_t size = curves->curves.size();
     const auto view = view_of(normals, size, "normals");
     if (!view) return fail(view.error());
-    if (degrees == nullptr && size > 0) return misuse("degrees", "the pointer is NULL");
+    if (degrees == nullptr && size > 0) return misuse("degrees", "the pointer is NULL; pass a valid pointer");
     curves->exact.resize(3 * size);
     const auto exact = VectorView<float>::packed(curves->exact.data(), size);
     curves->curves.unit_normals(t, exact, curves->threads);
@@ -297,13 +299,13 @@ void chronormal_curves_destroy(chronormal_curves* curves) { delete curves; }
 chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronormal_vectors base,
                                           const chronormal_target* targets, size_t target_count,
                                           const chronormal_options* options, chronormal_blend** result) {
-  if (result == nullptr) return misuse("result", "the pointer is NULL");
-  if (targets == nullptr && target_count > 0) return misuse("targets", "the pointer is NULL");
+  if (result == nullptr) return misuse("result", "the pointer is NULL; pass a valid pointer");
+  if (targets == nullptr && target_count > 0) return misuse("targets", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
     if (chosen.value().weighting != Weighting::kArea)
-      return misuse("options.weighting", "normals of blend shapes can only be weighted by area");
+      return misuse("options.weighting", "normals of blend shapes can only be weighted by area; choose this weighting");
     if (chosen.value().tolerance != kExactTolerance)
       return misuse("options.tolerance", "the tolerance of blend shapes must be 1e-6");
     Result<Topology> topology = topology_of(mesh);
@@ -340,8 +342,8 @@ size_t chronormal_blend_size(const chronormal_blend* blend) { return blend != nu
 
 chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                 chronormal_result normals, size_t* zeros) {
-  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
-  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL");
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL; pass a valid pointer");
+  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const auto view = view_of(normals, blend->blend.size());
     if (!view) return fail(view.error());
@@ -353,8 +355,8 @@ chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const d
 }
 
 chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights) {
-  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
-  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL");
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL; pass a valid pointer");
+  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const std::span<const double> all(weights, blend->targets);
     if (!std::all_of(all.begin(), all.end(), [](double weight) { return std::isfinite(weight); }))
@@ -366,7 +368,7 @@ chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const do
 
 chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
                                          size_t* zeros) {
-  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const auto written = write_to(output, blend->blend.size(), [&](const auto& result, IndexRange range) {
       return blend->blend.unit_normals(result, range);
@@ -381,9 +383,9 @@ void chronormal_blend_destroy(chronormal_blend* blend) { delete blend; }
 
 chronormal_status chronormal_motion_read(const char* const* files, size_t file_count, const chronormal_options* options,
                                          chronormal_motion** result) {
-  if (result == nullptr) return misuse("result", "the pointer is NULL");
+  if (result == nullptr) return misuse("result", "the pointer is NULL; pass a valid pointer");
   if (files == nullptr || std::find(files, files + file_count, nullptr) != files + file_count)
-    return misuse("files", "the pointer is NULL");
+    return misuse("files", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
@@ -405,8 +407,8 @@ chronormal_status chronormal_motion_read(const char* const* files, size_t file_c
 }
 
 chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path) {
-  if (motion == nullptr) return misuse("motion", "the pointer is NULL");
-  if (path == nullptr) return misuse("path", "the pointer is NULL");
+  if (motion == nullptr) return misuse("motion", "the pointer is NULL; pass a valid pointer");
+  if (path == nullptr) return misuse("path", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const Result<Path> wanted = make_path(path);
     if (!wanted) return fail(Error{ErrorCode::kUsage, "path", wanted.error().message});
@@ -434,7 +436,7 @@ void chronormal_motion_times(const chronormal_motion* motion, double* first, dou
 }
 
 chronormal_status chronormal_motion_unit_normals(chronormal_motion* motion, double time, chronormal_result normals) {
-  if (motion == nullptr) return misuse("motion", "the pointer is NULL");
+  if (motion == nullptr) return misuse("motion", "the pointer is NULL; pass a valid pointer");
   return guarded([&] {
     const std::size_t size = motion->sampler.output_count();
     const auto view = view_of(normals, size);

@@ -114,7 +114,7 @@ export function chronormal({ onReport, ...options } = {}) {
 // function that converts the text to a value.
 const OPTIONS = [
   ['for', '--for <VIEWERS>', 'the viewers that the result is made for, such as three,godot, or all'],
-  ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed', Number],
+  ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed, in degrees', Number],
   ['encode', '--encode <HOW>', 'how corrections are encoded: smallest, harmless, exact or endpoint'],
   ['weighting', '--weighting <RULE>', 'how much each face counts in a vertex normal'],
   ['maxTargets', '--max-targets <N>', 'at most N morph targets for each mesh', Number],

@@ -99,7 +99,7 @@ def _polygons(faces):
             return _np.cumsum([0] + sizes, dtype=_np.uint32), corners
         faces = _np.asarray(faces) if faces else _np.empty((0, 3), _np.uint32)
     if faces.ndim != 2:
-        raise ValueError(f"faces: the shape must be (F, k), but is {faces.shape}")
+        raise ValueError(f"faces: the shape must be (F, k), k corners for each of F faces, but is {faces.shape}")
     count, size = faces.shape
     corners = _indices(faces, "faces")
     if size == 3:
@@ -154,15 +154,15 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
             loop=False, strict=False):
     """Return the arguments that describe an input as a dict, as the extension module expects them."""
     if (source is None) == (sample is None):
-        raise ValueError("source: give files, bytes or a Motion, or the name of a built-in sample")
+        raise ValueError("source: give either files, bytes or a Motion as the source, or the name of a built-in morph as sample")
     data, files, motion = None, [], None
     if isinstance(source, Motion):
         motion = source
         for name, given in {"base": base is not None, "fps": fps != 1, "animation": animation is not None,
                             "world": world, "path": path != "linear", "loop": loop, "strict": strict}.items():
             if given:
-                raise ValueError(f"{name}: this option is only for reading files, and the source is a Motion"
-                                 + ("; cut() makes straight pieces" if name == "path" else ""))
+                raise ValueError(f"{name}: this option is only for reading files, and the source is a Motion; leave the option out"
+                                 + (" and call cut(), which makes straight pieces" if name == "path" else ""))
     elif isinstance(source, (bytes, bytearray, memoryview)):
         data = bytes(source)
     elif isinstance(source, (str, _os.PathLike)):
@@ -367,7 +367,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
         for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
                             "times": times, "certify": certify, "tolerance": tolerance is not None}.items():
             if given:
-                raise ValueError(f"{name}: this option cannot be used with face, which examines a single face")
+                raise ValueError(f"{name}: this option cannot be used with face, which examines a single face; leave one of the two out")
         number, segment = face if isinstance(face, tuple) else (face, 0)
         return _json.loads(_chronormal.figure_of_face(opened, list(schemes), samples, number, segment))
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
@@ -436,7 +436,7 @@ def _keyframes(positions, faces, times):
     """Return what the extension module needs for a query: positions (T, V, 3), offsets and corners, times (T,)."""
     positions = _vectors(positions, "positions")
     if positions.ndim != 3 or positions.shape[2] != 3:
-        raise ValueError(f"positions: the shape must be (T, V, 3), but is {positions.shape}")
+        raise ValueError(f"positions: the shape must be (T, V, 3), T keyframes of V vertices, but is {positions.shape}")
     times = _np.arange(len(positions), dtype=_np.float64) if times is None else _floats(times, "times")
     return positions, *_polygons(faces), times
 
@@ -482,7 +482,7 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     if (direction is None) == (eye is None):
         raise ValueError("direction: the camera is missing; give either direction or eye")
     if eye_to is not None and eye is None:
-        raise ValueError("eye_to: eye is missing, the place from which the camera moves")
+        raise ValueError("eye_to: the option eye is missing; give the place from which the camera moves to eye_to as eye")
     first = _floats(eye, "eye") if direction is None else _floats(direction, "direction")
     last = first if eye_to is None else _floats(eye_to, "eye_to")
     if first.shape != (3,) or last.shape != (3,):

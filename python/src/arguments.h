@@ -48,7 +48,8 @@ struct Numbers {
       one = *many->data();
       return;
     }
-    if (many->ndim() != 1) refuse(place, "the shape must be (T,), but is " + shape_text(*many));
+    if (many->ndim() != 1)
+      refuse(place, "the shape must be (T,), a number for each of T moments, but is " + shape_text(*many));
   }
 
   // Copies the numbers if they share memory with the array `out`, which will be written.

@@ -72,7 +72,8 @@ inline std::string shape_text(const py::array& array) {
 // Makes a view of an (n, 3) array of float32.
 template <int kFlags>
 VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
-  if (array.ndim() != 2 || array.shape(1) != 3) refuse(place, "the shape must be (n, 3), but is " + shape_text(array));
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    refuse(place, "the shape must be (n, 3), a vector in each of n rows, but is " + shape_text(array));
   return VectorView<const float>::packed(array.data(), static_cast<std::size_t>(array.shape(0)));
 }
 

@@ -21,7 +21,7 @@ class Turns {
   // handler that runs during a computation of the same thread, where waiting for the turn would never end.
   Turns& required_of_others() {
     require(owner_ != std::this_thread::get_id(), "self",
-            "the object is in use by the computation that this signal handler interrupts");
+            "a signal handler uses the object whose computation it interrupts; use the object after the computation");
     return *this;
   }
   void lock();

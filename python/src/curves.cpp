@@ -224,7 +224,7 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 }
 
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size) {
-  constexpr const char* kWanted = "out must be a C-contiguous array of float32";
+  constexpr const char* kWanted = "out must be a C-contiguous array of float32, such as numpy.empty() makes";
   const auto n = static_cast<py::ssize_t>(size);
   if (out.is_none()) {
     if (rows) return py::array_t<float>({static_cast<py::ssize_t>(*rows), n, py::ssize_t{3}});
@@ -244,7 +244,7 @@ py::array result_array(const py::object& out, std::optional<std::size_t> rows, s
     refuse("out", "the shape must be (" + (rows ? std::to_string(*rows) + ", " : "") + std::to_string(n) +
                       ", 3), but is " + shape_text(array));
   }
-  require(array.writeable(), "out", "the array is read-only");
+  require(array.writeable(), "out", "the array is read-only; give one that can be written");
   return array;
 }
 

@@ -161,15 +161,17 @@ class ReadMotion : public ZeroedObject {
     require(!times || !weights, "weights",
             "times and weights cannot be given together; give weights for blend shapes, times for other motions");
     require(times || weights || motion().segments.empty(), "times",
-            "times are missing; give times, or weights for blend shapes");
+            "the times are missing; give times, or weights for blend shapes");
     std::vector<double> at;
     std::size_t rows = 1, width = 0;
     if (times) {
-      if (times->ndim() != 1) refuse("times", "the shape must be (T,), but is " + shape_text(*times));
+      if (times->ndim() != 1)
+        refuse("times", "the shape must be (T,), a number for each of T moments, but is " + shape_text(*times));
       at = vector_of(*times);
       rows = at.size();
     } else if (weights) {
-      if (weights->ndim() != 2) refuse("weights", "the shape must be (T, K), but is " + shape_text(*weights));
+      if (weights->ndim() != 2)
+        refuse("weights", "the shape must be (T, K), K weights for each of T moments, but is " + shape_text(*weights));
       at = vector_of(*weights);
       rows = static_cast<std::size_t>(weights->shape(0));
       width = static_cast<std::size_t>(weights->shape(1));
@@ -236,7 +238,7 @@ py::tuple ReadMotion::state() const {
 
 ReadMotion::ReadMotion(const py::tuple& state) {
   require(state.size() == 10 && state[0].cast<int>() == kStateVersion, "state",
-          "another version of chronormal has made this pickle; make it again with this version");
+          "another version of chronormal has made this pickle; make the pickle again with this version");
   name_ = bytes_of_text(state[1]);
   Motion m;
   const auto offsets = state[3].cast<std::vector<std::uint32_t>>();
@@ -244,7 +246,8 @@ ReadMotion::ReadMotion(const py::tuple& state) {
       Topology::polygons(state[2].cast<std::size_t>(), offsets, state[4].cast<std::vector<std::uint32_t>>()));
   for (const py::handle each : state[5].cast<py::list>()) {
     const auto parts = each.cast<py::tuple>();
-    require(parts.size() == 6, "state", "the pickle is damaged, since a keyframe must have six parts");
+    require(parts.size() == 6, "state",
+            "the pickle is damaged, since a keyframe must have six parts; make the pickle again");
     const auto read = [&](std::size_t i, auto& values) {
       const auto bytes = parts[i].cast<std::string_view>();
       values.resize(bytes.size() / sizeof(values[0]));
@@ -260,7 +263,7 @@ ReadMotion::ReadMotion(const py::tuple& state) {
   }
   for (const auto& [from, to] : state[6].cast<std::vector<std::pair<std::size_t, std::size_t>>>()) {
     require(from < m.keyframes.size() && to < m.keyframes.size(), "state",
-            "the pickle is damaged, since a segment refers to a keyframe that does not exist");
+            "the pickle is damaged, since a segment refers to a keyframe that does not exist; make the pickle again");
     m.segments.push_back({from, to});
   }
   m.body_of_vertex = state[7].cast<std::vector<std::uint32_t>>();

@@ -62,7 +62,9 @@ py::dict ask_facing(const Positions& positions, const Indices& offsets, const In
 PointPaths paths_of(const Array<double>& points) {
   const bool moves = points.ndim() == 3 && points.shape(1) == 2 && points.shape(2) == 3;
   if (!moves && !(points.ndim() == 2 && points.shape(1) == 3))
-    refuse("points", "the shape must be (P, 3) or (P, 2, 3), but is " + shape_text(points));
+    refuse("points",
+           "the shape must be (P, 3) for P points, or (P, 2, 3) for the first and last place of each, but is " +
+               shape_text(points));
   const auto count = static_cast<std::size_t>(points.shape(0));
   const std::size_t row = moves ? 6 : 3;
   PointPaths paths;

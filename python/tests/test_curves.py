@@ -233,7 +233,7 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: curves.unit_normals(0.5, out=[1, 2]), "out: out must be a C-cont"),
                 (lambda: curves.unit_normals(0.5, out=np.zeros((11, 3), float32)), r"out: the shape must be .*but is \(11, 3\)"),
                 (lambda: curves.unit_normals([0.5], out=np.zeros((12, 3), float32)), r"must be \(1, 12, 3\)"),
-                (lambda: curves.unit_normals(0.5, out=read_only), "out: the array is read-only"),
+                (lambda: curves.unit_normals(0.5, out=read_only), "out: the array is read-only; give one that can be written"),
                 (lambda: curves.errors(0.5, p0[:3]), r"normals: the shape must be \(12, 3\), but is \(3, 3\)")):
             with self.assertRaisesRegex(ValueError, words):
                 call()

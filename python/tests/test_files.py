@@ -79,7 +79,7 @@ class ReadTest(unittest.TestCase):
                 (lambda: cn.read("/no/such.obj"), OSError, "/no/such.obj: No such file"),
                 (lambda: cn.read(b"v 0 0 0\nf 1 2 3\n"), ValueError, "line 2"),
                 (lambda: cn.read(b"what is this"), (ValueError, OSError), "<bytes>"),
-                (lambda: cn.read(), ValueError, "source: give files, bytes or a Motion"),
+                (lambda: cn.read(), ValueError, "source: give either files, bytes or a Motion"),
                 (lambda: cn.read("a", sample="twist"), ValueError, "source"),
                 (lambda: cn.read(sample="none"), ValueError, "none"),
                 (lambda: cn.read([]), ValueError, ""),

@@ -293,7 +293,7 @@ static int check_misuse(void) {
   chronormal_curves* curves = NULL;
   EXPECT(chronormal_curves_create(NULL, from, from, NULL, &curves) == CHRONORMAL_USAGE);
   EXPECT(chronormal_curves_create(&mesh, from, nothing, NULL, &curves) == CHRONORMAL_USAGE);
-  EXPECT(strcmp(chronormal_last_message(), "to: the pointer is NULL") == 0);
+  EXPECT(strcmp(chronormal_last_message(), "to: the pointer is NULL; pass a valid pointer") == 0);
   EXPECT(chronormal_curves_create(&mesh, from, crooked, NULL, &curves) == CHRONORMAL_USAGE);
   EXPECT(chronormal_curves_create(&wrong, from, from, NULL, &curves) == CHRONORMAL_INVALID_INPUT);
   EXPECT(strstr(chronormal_last_message(), "face 0, corner 2") != NULL);

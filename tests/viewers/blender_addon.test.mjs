@@ -199,7 +199,7 @@ describe('The add-on', () => {
       no_program: /could not be started/,
       none: /was not found.*Preferences/,
       read_only: /ermission denied/,
-      unknown: /version of the glTF exporter is unknown/,
+      unknown: /does not know this version of the glTF exporter/,
     };
     for (const [name, reason] of Object.entries(reasons)) {
       const [level, why] = said[name];

@@ -53,18 +53,19 @@ Status check_cells(vtkPolyData* from, vtkPolyData* to) {
   for (std::size_t list = 0; list < before.size(); ++list) {
     const vtkIdType count = before[list]->GetNumberOfCells();
     if (count != after[list]->GetNumberOfCells())
-      return invalid_input("", "the two steps have other numbers of vertices, lines, polygons or strips");
+      return invalid_input("", "the two steps have different numbers of vertices, lines, polygons or strips");
     for (vtkIdType c = 0; c < count; ++c, ++number) {
       const auto place = [number] { return "cell " + std::to_string(number); };
       before[list]->GetCellAtId(c, a);
       for (const vtkIdType point : *a) {
         if (point < 0 || point >= from->GetNumberOfPoints())
-          return invalid_input(place(), "it names point " + std::to_string(point) + ", which the mesh does not have");
+          return invalid_input(place(),
+                               "the cell refers to point " + std::to_string(point) + ", which the mesh does not have");
       }
       if (before[list] == after[list]) continue;
       after[list]->GetCellAtId(c, b);
       if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
-        return invalid_input(place(), "it has other points in the two steps");
+        return invalid_input(place(), "the cell has different points in the two steps");
     }
   }
   return Success{};
@@ -74,7 +75,7 @@ Status check_positions(vtkPolyData* mesh) {
   for (vtkIdType p = 0; p < mesh->GetNumberOfPoints(); ++p) {
     const double* const x = mesh->GetPoint(p);
     if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
-      return invalid_input("point " + std::to_string(p), "its coordinates must be finite");
+      return invalid_input("point " + std::to_string(p), "the coordinates of the point must be finite");
   }
   return Success{};
 }
@@ -263,7 +264,7 @@ Status check_motion(vtkPolyData* from, vtkPolyData* to) {
   vtkIdType corners = 0;
   for (vtkCellArray* const list : cell_lists(from)) corners += 3 * list->GetNumberOfConnectivityIds();
   if (size(std::max(points, corners)) > std::numeric_limits<std::uint32_t>::max())
-    return invalid_input("", "the mesh has more points or corners than 32 bits can count");
+    return invalid_input("", "the mesh has more points or corners than 32 bits can count; split the mesh");
   if (Status cells = check_cells(from, to); !cells) return cells;
   if (Status before = check_positions(from); !before) return before;
   return check_positions(to);

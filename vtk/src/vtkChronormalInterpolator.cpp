@@ -175,7 +175,7 @@ int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSma
   vtkInformation* const out = outputs->GetInformationObject(0);
   vtkDataObject* const output = vtkDataObject::GetData(out);
   if (inputs.empty() || inputs.front() == nullptr || inputs.back() == nullptr) {
-    vtkErrorMacro("There is no data to interpolate.");
+    vtkErrorMacro("There are no data to interpolate. Connect an input with time steps.");
     return 0;
   }
   Request request;
@@ -240,7 +240,7 @@ vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::InterpolateBlocks(cons
       is_same = is_same && block->GetCurrentFlatIndex() == index && (data.back() == nullptr) == (data[0] == nullptr);
     }
     if (!is_same) {
-      vtkErrorMacro(<< of_block.place << "It is in one of the two steps only.");
+      vtkErrorMacro(<< of_block.place << "This block is in only one of the two steps. Give all steps the same blocks.");
       return nullptr;
     }
     if (data[0] != nullptr) {
@@ -251,7 +251,7 @@ vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::InterpolateBlocks(cons
     for (vtkCompositeDataIterator* const block : blocks) block->GoToNextItem();
   }
   if (!std::all_of(blocks.begin(), blocks.end(), is_done)) {
-    vtkErrorMacro("The two steps have other numbers of blocks.");
+    vtkErrorMacro("The two steps have different numbers of blocks. Give all steps the same blocks.");
     return nullptr;
   }
   return result;
@@ -264,7 +264,7 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(const Ste
   auto* const mesh = vtkPolyData::SafeDownCast(from);
   if (mesh == nullptr && std::any_of(steps.begin(), steps.end(), has_normals)) {
     vtkErrorMacro(<< request.place << "The normals of a " << from->GetClassName()
-                  << " are those of its surface: extract it first, by vtkDataSetSurfaceFilter.");
+                  << " are those of its surface. Extract the surface first, with vtkDataSetSurfaceFilter.");
     return nullptr;
   }
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -273,7 +273,7 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(const Ste
     if (mesh != nullptr)
       motion = chronormal::vtk::check_motion(mesh, vtkPolyData::SafeDownCast(steps[k]));
     else if (this->Path == CATMULL_ROM && steps[k]->GetNumberOfPoints() != from->GetNumberOfPoints())
-      motion = chronormal::invalid_input("", "the two steps have other numbers of points");
+      motion = chronormal::invalid_input("", "the two steps have different numbers of points");
     if (motion) continue;
     vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
                   << request.times[std::min(k, request.from)] << " and " << request.times[std::max(k, request.from)]

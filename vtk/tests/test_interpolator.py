@@ -398,8 +398,8 @@ class ErrorsTest(unittest.TestCase):
                 faces[5] = np.roll(faces[5], 1)
             return mesh(positions(time, 4), faces)
 
-        self.assertIn("cell 5: it has other points in the two steps", self.error_of(other_cell))
-        self.assertIn("the two steps have other numbers of vertices, lines, polygons or strips",
+        self.assertIn("cell 5: the cell has different points in the two steps", self.error_of(other_cell))
+        self.assertIn("the two steps have different numbers of vertices, lines, polygons or strips",
                       self.error_of(lambda time: mesh(positions(time, 4), triangles(4)[int(time):])))
 
     def test_a_cell_of_points_that_are_not_there_is_an_error(self):
@@ -410,7 +410,7 @@ class ErrorsTest(unittest.TestCase):
             data.SetPolys(cells(faces))
             return data
 
-        self.assertIn("cell 3: it names point 16, which the mesh does not have", self.error_of(broken))
+        self.assertIn("cell 3: the cell refers to point 16, which the mesh does not have", self.error_of(broken))
 
     def test_a_point_that_is_nowhere_is_an_error(self):
         def lost(time):
@@ -418,7 +418,7 @@ class ErrorsTest(unittest.TestCase):
             points[9, 1] = np.nan if time > 0 else 0
             return mesh(points, triangles(4))
 
-        self.assertIn("point 9: its coordinates must be finite", self.error_of(lost))
+        self.assertIn("point 9: the coordinates of the point must be finite", self.error_of(lost))
 
     def test_errors_in_composite_data_name_the_block(self):
         def make(time, block):
@@ -447,8 +447,8 @@ class ErrorsTest(unittest.TestCase):
 
         no_motion = "block 2: the two steps have 16 and 25 points, so there is no motion between the steps at times 0 and 1."
         for block, text in ((changes, no_motion),
-                            (goes, "block 2: It is in one of the two steps only."),
-                            (grows, "The two steps have other numbers of blocks."),
+                            (goes, "block 2: This block is in only one of the two steps. Give all steps the same blocks."),
+                            (grows, "The two steps have different numbers of blocks. Give all steps the same blocks."),
                             (volume, "block 2: The normals of a vtkUnstructuredGrid are those of its surface")):
             self.assertIn(text, self.error_of(lambda time: make(time, block), "vtkMultiBlockDataSet"))
 

@@ -153,7 +153,7 @@ export function verdict({ audit }) {
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
   if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets.';
   if (audit.cancelled > 0 && worst < 0.5) {
-    return `At some moment, the normals of the faces around ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel, so no normal is right there. All others are right within ${degreesText(worst)}.`;
+    return `At some moment, the normals of the faces around ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel each other, so no normal is right there. All others are right within ${degreesText(worst)}.`;
   }
   if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
   const torn = tornText(audit);

@@ -9,8 +9,8 @@ import { makePlot } from './plot.js';
 import { makeView } from './view.js';
 
 const KEYS = [
-  ['Space', 'play, pause'], ['← →', 'one moment back or on; ten with Shift'], ['1 2 3', 'lit, normals as colours, error'],
-  ['W', 'side by side, or a wipe'], ['N P', 'next, previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
+  ['Space', 'play, pause'], ['← →', 'go one moment back or on, or ten with Shift'], ['1 2 3', 'show the lit mesh, normals as colours, or the error'],
+  ['W', 'show two pictures side by side, or as a wipe'], ['N P', 'go to the next or previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
 ];
 
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
@@ -41,7 +41,7 @@ export function makeViewer(root, report, compute) {
   const plotBox = h('div', { className: 'plot', role: 'img', 'aria-label': 'the error over the motion' });
   const low = h('span', {}, '0°'), high = h('span', {}), bar = h('i', {});
   bar.style.background = gradient();
-  const scale = h('select', { 'aria-label': 'where the scale ends', onchange: () => setScale() },
+  const scale = h('select', { 'aria-label': 'largest error on the scale, in degrees', onchange: () => setScale() },
     h('option', { value: 'auto' }, 'scale: auto'), SCALES.map((end) => h('option', { value: end }, `0 to ${end}°`)));
   const legend = h('div', { className: 'legend' }, low, bar, high, scale);
   const drawings = [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between the rendered and the true normals (3)']];

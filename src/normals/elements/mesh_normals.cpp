@@ -583,7 +583,8 @@ Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte
 Status MeshNormals::set_targets(BlendSet set) {
   Parts& parts = *parts_;
   if (parts.options.weighting != Weighting::kArea)
-    return Error{ErrorCode::kUsage, "weighting", "normals of blend shapes can only be weighted by area"};
+    return Error{ErrorCode::kUsage, "weighting",
+                 "normals of blend shapes can only be weighted by area; choose this weighting"};
   if (!(set.topology == parts.topology())) return invalid_input("", "the blend shapes belong to another mesh");
   if (Status status = validate(set); !status) return status;
   if (!parts.knows_elements()) {
