@@ -129,8 +129,8 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
         {.rare = true}},
        {"--access KIND",
         &options.access,
-        "how moments are computed: random or sequential\nrandom (default) computes each moment alone, sequential "
-        "from the one before",
+        "how moments are computed: random or sequential\nrandom (default) computes each moment alone, and sequential "
+        "computes it from the one before",
         {.check = check_access, .rare = true}}},
       {{"--certify",
         &options.certify,

@@ -15,8 +15,8 @@ Question contain_question() {
   return {"contain",
           "which points are inside a closed mesh, and when they cross its surface",
           {{"--points P.npy", file.get(),
-            "the points, an array (n, 3)\nAn array (n, 2, 3) has points that move straight from the first place to the "
-            "second, in the time of the motion"}},
+            "the .npy file of the points, an array of shape (n, 3)\nWith the shape (n, 2, 3), each point moves "
+            "straight from its first place to its second, in the time of the motion"}},
           [file]() -> Result<Ask> {
             if (file->empty()) return misuse("--points", "the points are missing; name a .npy file of points");
             Result<PointPaths> points = read_points_file(*file);

@@ -453,7 +453,7 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   if (bake.has_offsets)
     text += "where the stored normals of keyframe 0 differ from the surface, that difference is kept\n";
   if (bake.keys) {
-    text += formatted("{}, {} of them between keyframes; {} left out; equal steps would need {}\n",
+    text += formatted("{}, {} of them between keyframes; {} left out; at equal steps of time, {} would be needed\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
                       counted(bake.keys->left_out, "keyframe", "keyframes"), counted(bake.keys->even, "key", "keys"));
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",

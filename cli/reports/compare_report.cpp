@@ -67,7 +67,7 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     if (row.certified)
       add(row.certified->unbounded, share(row.certified->unbounded) +
                                         (row.certified->unbounded == 1 ? " has" : " have") +
-                                        " no bound, since a normal vanishes on the way");
+                                        " no bound, since a normal vanishes between the ends of the segment");
     add(row.quality.missing,
         counted(row.quality.missing, "sample was", "samples were") + " left out, since the scheme has no normal there");
   }

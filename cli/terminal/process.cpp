@@ -19,7 +19,8 @@ constexpr int kExitFailed = 1;
 
 volatile std::sig_atomic_t stderr_is_terminal = 0;
 std::atomic<const char*> last_words{nullptr};
-static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<const char*>::is_always_lock_free,
+              "a signal handler must not wait for a lock, so this type must be lock-free");
 
 // Clears the current line of the terminal before it prints the message, because the line may show a progress bar.
 void end_line_and_say(const char* message) {

@@ -47,7 +47,8 @@ Result<BlendSet> blend_set_of(const Motion& star) {
     for (std::size_t i = 0; i < deltas.size(); ++i)
       deltas[i] = static_cast<float>(
           difference(end.positions[i], of_end.empty() ? 0 : of_end[i], set.base[i], of_base.empty() ? 0 : of_base[i]));
-    if (!all_finite(deltas)) return invalid_input(place(), "a delta of the target is too large for float32");
+    if (!all_finite(deltas))
+      return invalid_input(place(), "a delta of the target is too large for float32; scale the mesh down");
     set.targets.push_back(BlendTarget::from_dense(deltas, end.name));
   }
   return set;

@@ -97,7 +97,7 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
 }
 
 Result<Instant> find_instant(const Motion& motion, double time) {
-  if (motion.segments.empty()) return misuse("the mesh does not move, so it has no times");
+  if (motion.segments.empty()) return misuse("the mesh does not move, so it has no times; leave the times out");
   if (motion.kind == MotionKind::kTargets)
     return misuse("blend shapes have no times; give a weight for each target instead");
   const auto start_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].from].time; };

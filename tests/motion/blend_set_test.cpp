@@ -70,7 +70,8 @@ TEST(BlendSet, a_star_of_segments_gives_a_target_for_each) {
   star.segments = {{0, 1}};
   star.keyframes[0].positions[0] = 3e38F;
   star.keyframes[1].positions[0] = -3e38F;
-  EXPECT_EQ(blend_set_of(star).error().text(), "target 0: a delta of the target is too large for float32");
+  EXPECT_EQ(blend_set_of(star).error().text(),
+            "target 0: a delta of the target is too large for float32; scale the mesh down");
 }
 
 TEST(BlendSet, valid_sets_pass_whatever_is_empty) {

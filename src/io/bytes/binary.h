@@ -44,8 +44,9 @@ void append(std::string& text, T value, std::endian order) {
 
 /// Returns the reason why float32 cannot hold a coordinate, or nullptr if float32 can hold it.
 [[nodiscard]] inline const char* coordinate_fault(double value) noexcept {
-  if (!std::isfinite(value)) return "the coordinate is NaN or infinite";
-  if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large for float32";
+  if (!std::isfinite(value)) return "the coordinate is NaN or infinite; export the file again";
+  if (std::fabs(value) > std::numeric_limits<float>::max())
+    return "the coordinate is too large for float32; scale the mesh down";
   return nullptr;
 }
 

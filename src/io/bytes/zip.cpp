@@ -186,7 +186,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
   const std::string_view header = file.substr(static_cast<std::size_t>(member.header));
   const std::size_t name_size = load16(header, 26), extra_size = load16(header, 28);
   if (load32(header, 0) != kMemberWord || header.substr(kMemberSize, name_size) != member.name)
-    return damaged("the array is damaged, since its two headers in the zip file differ");
+    return damaged("the array is damaged, since its two headers in the .npz (zip) file differ");
   const std::size_t data = kMemberSize + name_size + extra_size;
   if (data > header.size() || member.packed_size > header.size() - data)
     return damaged("the array lies partly outside of the file, which is damaged or cut off");

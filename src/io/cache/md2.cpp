@@ -60,7 +60,7 @@ class Md2Reader {
     if (bytes_.size() < kMd2HeaderSize)
       return error(bytes_.size(), "the file is cut off inside its header of 68 bytes; copy or export it again");
     if (field(4) != 8)
-      return error(4, "version " + std::to_string(field(4)) + " of MD2 cannot be read; only version 8 can");
+      return error(4, "version " + std::to_string(field(4)) + " of MD2 cannot be read; only version 8 can be read");
     if (field(24) <= 0)
       return error(24, "the number of vertices is " + std::to_string(field(24)) + ", but must be at least 1");
     vertex_count_ = static_cast<std::size_t>(field(24));

@@ -107,7 +107,7 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
   const auto version = static_cast<unsigned char>(start[6]);
   if (version < 1 || version > 3 || start[7] != '\0')
     return error("version " + std::to_string(version) + "." + std::to_string(static_cast<unsigned char>(start[7])) +
-                 " of the array header cannot be read; only 1.0, 2.0 and 3.0 can");
+                 " of the array header cannot be read; only 1.0, 2.0 and 3.0 can be read");
   const std::size_t text_begin = version == 1 ? 10 : 12;
   const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
                                              : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);

@@ -25,7 +25,7 @@ Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, 
                          "the file is cut off inside its header of 32 bytes; copy or export it again");
   if (const auto version = binary::load<std::int32_t>(bytes.data() + 12, kPc2Order); version != 1)
     return invalid_input(binary::place(name, 12),
-                         "version " + std::to_string(version) + " of PC2 cannot be read; only version 1 can");
+                         "version " + std::to_string(version) + " of PC2 cannot be read; only version 1 can be read");
   const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 16, kPc2Order),
                                    binary::load<std::int32_t>(bytes.data() + 28, kPc2Order)};
   const double first = double{binary::load<float>(bytes.data() + 20, kPc2Order)};

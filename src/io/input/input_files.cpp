@@ -23,7 +23,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kNoneMatches = "no file has this name or matches this pattern";
-constexpr std::string_view kTopologyMustNotChange = "; all keyframes must have the same faces";
+constexpr std::string_view kTopologyMustNotChange = "; give keyframes that all have the same faces";
 
 // Removes the digits at the beginning of the text, and returns them without their leading zeros.
 std::string_view take_number(std::string_view& text) {
@@ -250,9 +250,9 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
   };
   const std::string range = "the keyframes are numbered from 0 to " + std::to_string(count - 1);
   if (options.every == 0) return misuse("--every", "the step must be at least 1");
-  if (options.to && *options.to >= count) return misuse("--to", "there is no such keyframe; " + range);
+  if (options.to && *options.to >= count) return misuse("--to", "there is no keyframe with this number; " + range);
   const std::size_t last = options.to.value_or(count - 1);
-  if (options.from >= count) return misuse("--from", "there is no such keyframe; " + range);
+  if (options.from >= count) return misuse("--from", "there is no keyframe with this number; " + range);
   std::vector<std::size_t> frames;
   for (std::size_t k = options.from; k <= last; k += std::min(options.every, count)) frames.push_back(k);
   if (frames.size() < 2 && options.chooses_frames())
@@ -260,7 +260,7 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
                   : options.to                        ? "--to"
                   : options.loop && options.from == 0 ? "--loop"
                                                       : "--from",
-                  "fewer than two keyframes are left, but a motion needs at least two; " + range);
+                  "with these options fewer than two keyframes are left, but a motion needs at least two; " + range);
   if (options.loop) frames.push_back(frames.front());
   return frames;
 }
@@ -336,7 +336,7 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
 Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                            const std::string& place) {
   const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* one, const char* many) {
-    return invalid_input(place, "it has " + counted(count, one, many) + ", but " + first_name + " has " +
+    return invalid_input(place, "this mesh has " + counted(count, one, many) + ", but " + first_name + " has " +
                                     grouped(first_count) + std::string(kTopologyMustNotChange));
   };
   if (other.vertex_count() != first.vertex_count())

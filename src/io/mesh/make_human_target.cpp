@@ -125,7 +125,7 @@ Status TargetReader::read_line(std::string_view line) {
     const NumberFault fault = scan::parse_float(word, delta[axis]);
     if (fault != NumberFault::kNone) return axis_error(scan::describe(fault, word));
     if (!std::isfinite(from[axis] + delta[axis]))
-      return axis_error("the sum of base and delta is too large for float32");
+      return axis_error("the sum of base and delta is too large for float32; scale the mesh down");
   }
   const std::string_view rest = scan::take_word(line);
   if (!rest.empty() && !rest.starts_with('#'))
@@ -149,7 +149,8 @@ Result<std::uint32_t> TargetReader::read_vertex(std::string_view word) {
     return error(scan::quoted(word) + " is not a vertex of the base, whose " +
                  counted(base_.count, "vertex is", "vertices are") + " counted from 0");
   const auto vertex = static_cast<std::uint32_t>(index);
-  if (has_delta_[vertex]) return error("vertex " + std::to_string(vertex) + " has two deltas in this file");
+  if (has_delta_[vertex])
+    return error("vertex " + std::to_string(vertex) + " has two deltas in this file; remove one of them");
   return vertex;
 }
 

@@ -137,9 +137,9 @@ class BinarySource {
       value = static_cast<float>(whole);
       return true;
     }
-    if (!std::isfinite(real)) return fail("the coordinate is NaN or infinite", type);
+    if (!std::isfinite(real)) return fail("the coordinate is NaN or infinite; export the file again", type);
     if (std::fabs(real) > std::numeric_limits<float>::max())
-      return fail("the coordinate is too large for float32", type);
+      return fail("the coordinate is too large for float32; scale the mesh down", type);
     value = static_cast<float>(real);
     return true;
   }
@@ -152,9 +152,9 @@ class BinarySource {
       last_digit = 1;
       return true;
     }
-    if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite", type);
+    if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite; export the file again", type);
     if (std::fabs(value) > std::numeric_limits<float>::max())
-      return fail("the coordinate is too large for float32", type);
+      return fail("the coordinate is too large for float32; scale the mesh down", type);
     // A binary number has no decimal digits. 0 means that any rounding to float32 counts as a loss of digits.
     last_digit = 0;
     return true;

@@ -112,7 +112,7 @@ Status HeaderReader::read_statement(const Words& words) {
 }
 
 Status HeaderReader::read_format(const Words& words) {
-  if (has_format_) return error("the header has two lines that begin with format");
+  if (has_format_) return error("the header has two lines that begin with format; remove one of them");
   if (words.size() != 3) return error("the line must be: format ENCODING 1.0");
   if (words[1] == "ascii") {
     header_.encoding = PlyEncoding::kAscii;
@@ -124,7 +124,8 @@ Status HeaderReader::read_format(const Words& words) {
     return error("the encoding " + scan::quoted(words[1]) +
                  " cannot be read; it must be ascii, binary_little_endian or binary_big_endian");
   }
-  if (words[2] != "1.0") return error("version " + scan::quoted(words[2]) + " of PLY cannot be read; only 1.0 can");
+  if (words[2] != "1.0")
+    return error("version " + scan::quoted(words[2]) + " of PLY cannot be read; only 1.0 can be read");
   has_format_ = true;
   return Success{};
 }
@@ -138,14 +139,15 @@ Status HeaderReader::read_element(const Words& words) {
   if (code != std::errc{} || end != last)
     return error(scan::quoted(words[2]) + " is not a valid number of " + scan::quoted(words[1]) + " elements");
   if (!element_names_.insert(element.name).second)
-    return error("the element " + scan::quoted(element.name) + " is declared twice");
+    return error("the element " + scan::quoted(element.name) + " is declared twice; remove one of the two lines");
   property_names_.clear();
   header_.elements.push_back(std::move(element));
   return Success{};
 }
 
 Status HeaderReader::read_property(const Words& words) {
-  if (header_.elements.empty()) return error("a property must come after its element");
+  if (header_.elements.empty())
+    return error("a line that begins with property must come after a line that begins with element");
   const bool is_list = words.size() > 1 && words[1] == "list";
   if (words.size() != (is_list ? 5 : 3))
     return error("the line must be: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
@@ -165,7 +167,7 @@ Status HeaderReader::read_property(const Words& words) {
     property.count_type = *count_type;
   }
   if (!property_names_.insert(property.name).second)
-    return error("the property " + scan::quoted(property.name) + " is declared twice");
+    return error("the property " + scan::quoted(property.name) + " is declared twice; remove one of the two lines");
   if (Status status = assign_role(property); !status) return status;
   header_.elements.back().properties.push_back(property);
   return Success{};
@@ -214,7 +216,8 @@ Status HeaderReader::check_elements() {
     if (has_strips) return error("the file has triangle strips, which cannot be read; export it with faces");
     return error("the file has no faces");
   }
-  if (!has_role(header_.face_element, Role::kIndices)) return error("the faces have no property vertex_indices");
+  if (!has_role(header_.face_element, Role::kIndices))
+    return error("the faces have no property vertex_indices; export the file again");
   return Success{};
 }
 

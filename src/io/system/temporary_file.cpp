@@ -25,7 +25,8 @@ std::array<std::atomic<char*>, kMostFiles>
     // Names that remove_temporaries() took. They are never freed, because their TemporaryFile objects may still read
     // them.
     removed{};
-static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<char*>::is_always_lock_free,
+              "a signal handler must not wait for a lock, so this type must be lock-free");
 
 // Returns 16 random hexadecimal digits.
 std::string random_digits() {

@@ -78,9 +78,9 @@ bool any_shaded(const GltfShading& shading) {
 Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::size_t mesh) {
   const std::string extras = std::string("/meshes/").append(std::to_string(mesh)).append("/extras");
   if (!edit.has(extras) || edit.text(extras).starts_with("{")) return Success{};
-  return invalid_input(
-      document.name() + ", " + extras,
-      "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
+  return invalid_input(document.name() + ", " + extras,
+                       "the extras are not a JSON object, so the bake cannot be recorded there; remove the extras, or "
+                       "make them an object");
 }
 
 // Tells for each part of a mesh whether the part gets new base normals.

@@ -35,7 +35,9 @@ struct ShardRows {
 
 Result<ShardRows> open_rows(const std::string& path) {
   std::optional<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return Error{ErrorCode::kFailed, path, "the file does not exist, or cannot be read"};
+  if (!file)
+    return Error{ErrorCode::kFailed, path,
+                 "the file does not exist, or cannot be read; name the shards that sample wrote"};
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
   if (Status status = file->read(0, start); !status) return status.error();
   Result<npy::Array> array = npy::read_header(start, file->size(), path, true);

@@ -84,7 +84,7 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
                        writer.header(0)),
-            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32");
+            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32; scale the mesh down");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
             "a.mc, byte 136: the channel 'a' has 2 points here, but 1 in earlier samples");

@@ -62,7 +62,7 @@ TEST(ReadMd2, clips_are_apart) {
 
 TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(error_with(0, "IDP3"), "imp.md2, byte 0: this is not an MD2 file, since it does not begin with IDP2");
-  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; only version 8 can");
+  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; only version 8 can be read");
   EXPECT_EQ(error_with(16, "\x35"),
             "imp.md2, byte 16: the size of a frame in the header is 53, but 3 vertices take 52 bytes");
   EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the number of vertices is 0, but must be at least 1");
@@ -76,9 +76,10 @@ TEST(ReadMd2, errors_say_where_and_what) {
       "imp.md2, byte 56: the file is cut off, since it should have 2 frames from byte -1 on, but has only 184 bytes");
   EXPECT_EQ(error_with(70, "\3"),
             "imp.md2, byte 70, triangle 0: corner 1 refers to vertex 3, but the file has only 3 vertices");
-  EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s), "imp.md2, byte 120, frame 0, vertex 0: the coordinate is NaN or infinite");
+  EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s),
+            "imp.md2, byte 120, frame 0, vertex 0: the coordinate is NaN or infinite; export the file again");
   EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"),
-            "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large for float32");
+            "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large for float32; scale the mesh down");
 }
 
 }  // namespace

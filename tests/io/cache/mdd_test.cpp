@@ -59,7 +59,7 @@ TEST(ReadMdd, errors_say_where_and_what) {
             "walk.mdd, byte 15: the file is cut off inside the times of its samples; copy or export it again");
   EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is NaN or infinite");
   EXPECT_EQ(error_of(patched(20, "\xFF\xC0\0\0"s)),
-            "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is NaN or infinite");
+            "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is NaN or infinite; export the file again");
 }
 
 TEST(WriteMdd, writes_the_bytes_that_were_made_by_hand) {

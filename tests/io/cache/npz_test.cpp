@@ -138,11 +138,11 @@ TEST(ReadNpz, errors_name_array_and_element) {
   auto elements = test::turning_elements<double>(true);
   elements[1 + 2 * (2 + 3 * 1)] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(error_of(archive(npy(npy_header("<f8", "(2, 3, 3)", true), raw(elements)), kFaces)),
-            "walk.npz, positions[1, 2, 1]: the coordinate is NaN or infinite");
+            "walk.npz, positions[1, 2, 1]: the coordinate is NaN or infinite; export the file again");
   elements = test::turning_elements<double>(false);
   elements[13] = -1e39;
   EXPECT_EQ(error_of(archive(npy(npy_header("<f8", "(2, 3, 3)"), raw(elements)), kFaces)),
-            "walk.npz, positions[1, 1, 1]: the coordinate is too large for float32");
+            "walk.npz, positions[1, 1, 1]: the coordinate is too large for float32; scale the mesh down");
   EXPECT_EQ(
       error_of(archive(npy(npy_header("<i4", "(2, 3, 3)"), std::string(72, '\0')), kFaces)),
       "walk.npz, positions: positions must be an array of shape (keyframes, vertices, 3) of float32 or float64; this "

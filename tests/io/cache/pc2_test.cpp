@@ -40,7 +40,8 @@ TEST(ReadPc2, errors_say_where_and_what) {
   using std::string_literals::operator""s;
   EXPECT_EQ(error_of("POINTCACHE3"),
             "walk.pc2, byte 0: this is not a PC2 file, since it does not begin with POINTCACHE2");
-  EXPECT_EQ(error_of(patched(12, "\2")), "walk.pc2, byte 12: version 2 of PC2 cannot be read; only version 1 can");
+  EXPECT_EQ(error_of(patched(12, "\2")),
+            "walk.pc2, byte 12: version 2 of PC2 cannot be read; only version 1 can be read");
   EXPECT_EQ(error_of(patched(20, "\0\0\xC0\x7F"s)),
             "walk.pc2, byte 20: the start frame is NaN or infinite; export the file again");
   for (const std::string& step : {"\0\0\0\0"s, "\0\0\x80\xBF"s, "\0\0\x80\x7F"s})
@@ -60,7 +61,7 @@ TEST(ReadPc2, errors_say_where_and_what) {
       error_of(test::small_pc2(0, 1) + "x"),
       "walk.pc2, byte 32: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");
   EXPECT_EQ(error_of(patched(32 + 4 * 13, "\0\0\x80\xFF"s)),
-            "walk.pc2, byte 84, sample 1, vertex 1: the coordinate is NaN or infinite");
+            "walk.pc2, byte 84, sample 1, vertex 1: the coordinate is NaN or infinite; export the file again");
 }
 
 TEST(WritePc2, writes_the_bytes_that_were_made_by_hand) {

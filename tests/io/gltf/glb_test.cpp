@@ -50,7 +50,8 @@ TEST(ReadGlb, errors_say_where_and_what) {
             "a.glb, byte 24: the file is cut off inside the header of a chunk; copy or export it again");
   EXPECT_EQ(error_of(glb(json + word(9) + kBin)),
             "a.glb, byte 24: chunk 1 should have 9 bytes, but only 0 are left in the file; copy or export it again");
-  EXPECT_EQ(error_of(glb(chunk("JSON", "{} ") + " ")), "a.glb, byte 12: the length of chunk 0 must be a multiple of 4");
+  EXPECT_EQ(error_of(glb(chunk("JSON", "{} ") + " ")),
+            "a.glb, byte 12: the length of chunk 0 must be a multiple of 4; export the file again");
   EXPECT_EQ(error_of(glb(chunk(kBin, "") + json)),
             "a.glb, byte 16: the first chunk must be JSON, but has another type; export the file again");
   EXPECT_EQ(error_of(glb(json + json)),

@@ -335,7 +335,7 @@ TEST(InputFrames, from_to_and_every_choose_keyframes_and_keep_their_times) {
       }
       options.to = 9;
       EXPECT_EQ(test::read_motion(options).error().text(),
-                "--to: there is no such keyframe; the keyframes are numbered from 0 to 8");
+                "--to: there is no keyframe with this number; the keyframes are numbered from 0 to 8");
       options.to = 2;
       EXPECT_EQ(test::read_motion(options).error().code, ErrorCode::kUsage);
     }

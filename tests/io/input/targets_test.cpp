@@ -170,7 +170,8 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
   EXPECT_EQ(place_of("d.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"), folder_ / "d.obj");
   EXPECT_EQ(place_of("e.stl", "solid\n"), folder_ / "e.stl");
   const Error faces = error_of(read({folder_.write("f.obj", kSquareObj.substr(0, 32) + "f 1 3 2\nf 1 3 4\n")}));
-  EXPECT_EQ(faces.text(), folder_ / "f.obj" + ": face 0 differs from the base; all keyframes must have the same faces");
+  EXPECT_EQ(faces.text(),
+            folder_ / "f.obj" + ": face 0 differs from the base; give keyframes that all have the same faces");
 
   const Error missing = error_of(read({folder_ / "no.target"}));
   EXPECT_EQ(missing.code, ErrorCode::kFailed);

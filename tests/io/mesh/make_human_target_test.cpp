@@ -111,7 +111,7 @@ TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong
   EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of vertex 1: '1e39' is too large for float32");
   EXPECT_EQ(second_line("1 1 1 1 1"),
             at + "the line has '1' after the delta of vertex 1, but must have only an index and three numbers");
-  EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file");
+  EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file; remove one of them");
   EXPECT_EQ(error_text(gzip("0 0 0 0\n\nq")),
             "a.target, line 3: 'q' is not an index; a line must have an index and three numbers");
 }
@@ -133,9 +133,9 @@ TEST(MakeHumanTarget, delta_must_not_take_a_coordinate_out_of_float32) {
   EXPECT_TRUE(check("0 3.4028234e38 0 0\n", {0, 0, 0}));
   EXPECT_TRUE(check("0 -3.4028234e38 0 1\n", {most, 0, most}));
   EXPECT_EQ(error_text("0 0 0 1e38\n", {0, 0, most}),
-            "a.target, line 1: z of vertex 0: the sum of base and delta is too large for float32");
+            "a.target, line 1: z of vertex 0: the sum of base and delta is too large for float32; scale the mesh down");
   EXPECT_EQ(error_text("0 0 -3e38 0\n", {0, -3e38F, 0}),
-            "a.target, line 1: y of vertex 0: the sum of base and delta is too large for float32");
+            "a.target, line 1: y of vertex 0: the sum of base and delta is too large for float32; scale the mesh down");
 }
 
 TEST(MakeHumanTarget, text_cut_off_anywhere_is_an_error_or_the_lines_before_it) {

@@ -182,14 +182,18 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
             "walk.ply, line 2: the header does not end, since the line end_header is missing");
   EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"),
             "walk.ply, line 3: the header has no line that begins with 'format'");
-  EXPECT_EQ(with("ascii 1.0", "ascii 1.1"), "walk.ply, line 2: version '1.1' of PLY cannot be read; only 1.0 can");
+  EXPECT_EQ(with("ascii 1.0", "ascii 1.1"),
+            "walk.ply, line 2: version '1.1' of PLY cannot be read; only 1.0 can be read");
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
   EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with 'format'"));
   EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
   EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is not a type of PLY");
   EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");
   EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: the line must be: property TYPE NAME"));
-  EXPECT_TRUE(with("element vertex 4\n", "").starts_with("walk.ply, line 3: a property must come after its element"));
+  EXPECT_TRUE(
+      with("element vertex 4\n", "")
+          .starts_with(
+              "walk.ply, line 3: a line that begins with property must come after a line that begins with element"));
   EXPECT_TRUE(with("list uchar int", "list float int").starts_with("walk.ply, line 8: the length of a list must be"));
   EXPECT_TRUE(with("list uchar int", "list uchar float").find("must be a list of integers") != std::string::npos);
   EXPECT_TRUE(with("list uchar int", "int").find("must be a list of integers") != std::string::npos);
@@ -199,10 +203,12 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   const auto with = [](const std::string& what, const std::string& by) {
     return error_of(replaced(ascii_file(), what, by));
   };
-  EXPECT_EQ(with("float z", "float y"), "walk.ply, line 6: the property 'y' is declared twice");
-  EXPECT_EQ(with("element face", "element vertex"), "walk.ply, line 7: the element 'vertex' is declared twice");
+  EXPECT_EQ(with("float z", "float y"),
+            "walk.ply, line 6: the property 'y' is declared twice; remove one of the two lines");
+  EXPECT_EQ(with("element face", "element vertex"),
+            "walk.ply, line 7: the element 'vertex' is declared twice; remove one of the two lines");
   EXPECT_EQ(with("format ascii 1.0", "format ascii 1.0\nformat ascii 1.0"),
-            "walk.ply, line 3: the header has two lines that begin with format");
+            "walk.ply, line 3: the header has two lines that begin with format; remove one of them");
   EXPECT_EQ(with("vertex_indices", "vertex_indices\nproperty list uchar int vertex_index"),
             "walk.ply, line 9: the faces have both vertex_indices and vertex_index; keep one of them");
   EXPECT_EQ(with("float z", "list char float z"),
@@ -212,7 +218,8 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   EXPECT_EQ(with("vertex 4", "vertex 0"), "walk.ply, line 9: the file has no vertices");
   EXPECT_EQ(with("element face", "element edge"), "walk.ply, line 9: the file has no faces");
   EXPECT_EQ(with("face 2", "face 0"), "walk.ply, line 9: the file has no faces");
-  EXPECT_EQ(with("vertex_indices", "corners"), "walk.ply, line 9: the faces have no property vertex_indices");
+  EXPECT_EQ(with("vertex_indices", "corners"),
+            "walk.ply, line 9: the faces have no property vertex_indices; export the file again");
   EXPECT_EQ(with("element face", "element tristrips"),
             "walk.ply, line 9: the file has triangle strips, which cannot be read; export it with faces");
 }
@@ -324,8 +331,10 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
     return error_of(bytes.replace(body + at, raw.size(), raw));
   };
   const auto place = [&](std::size_t at) { return "walk.ply, byte " + std::to_string(body + at); };
-  EXPECT_EQ(with(16, std::string("\0\0\xC0\x7F", 4)), place(16) + ", vertex 1: the coordinate is NaN or infinite");
-  EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)), place(32) + ", vertex 2: the coordinate is NaN or infinite");
+  EXPECT_EQ(with(16, std::string("\0\0\xC0\x7F", 4)),
+            place(16) + ", vertex 1: the coordinate is NaN or infinite; export the file again");
+  EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)),
+            place(32) + ", vertex 2: the coordinate is NaN or infinite; export the file again");
   EXPECT_EQ(with(41, std::string("\3\0\0\0", 4)),
             place(45) + ", face 0: corner 1 refers to vertex 3, but the file has 3 vertices");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
@@ -344,7 +353,8 @@ TEST(ReadPly, double_that_is_too_large_for_float_is_an_error) {
       "z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n",
       false);
   writer.add(0.1).add(-1e39).add(0.0).add(0x03U).add(0U);
-  EXPECT_NE(error_of(writer.bytes()).find("vertex 0: the coordinate is too large for float32"), std::string::npos);
+  EXPECT_NE(error_of(writer.bytes()).find("vertex 0: the coordinate is too large for float32; scale the mesh down"),
+            std::string::npos);
 }
 
 RC_GTEST_PROP(WritePly, what_was_written_reads_back_bit_for_bit_in_every_encoding, ()) {

@@ -515,7 +515,7 @@ TEST(Bake, errors_say_what_and_where) {
   };
   expect(builder, {.most_bytes = 10}, "bytes, but --max-bytes allows only 10");
   builder.json["meshes"][0]["extras"] = 5;
-  expect(builder, {}, "/meshes/0/extras: extras is not an object");
+  expect(builder, {}, "/meshes/0/extras: the extras are not a JSON object");
   GltfBuilder still;
   test::Hills hills(1);
   still.add_mesh(hills.primitive(still, {std::vector<float>(hills.positions.size())}));

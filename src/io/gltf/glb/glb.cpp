@@ -39,7 +39,9 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
       return error(at, "chunk " + std::to_string(chunk) + " should have " + counted(size, "byte", "bytes") +
                            ", but only " + counted(bytes.size() - begin, "is left", "are left") +
                            " in the file; copy or export it again");
-    if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " must be a multiple of 4");
+    if (size % 4 != 0)
+      return error(at,
+                   "the length of chunk " + std::to_string(chunk) + " must be a multiple of 4; export the file again");
     if ((chunk == 0) != (type == kJson))
       return error(at + 4, chunk == 0 ? "the first chunk must be JSON, but has another type; export the file again"
                                       : "the file has a second JSON chunk, but may have only one; export it again");
