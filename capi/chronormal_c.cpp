@@ -45,7 +45,7 @@ chronormal_status guarded(const Body& body) noexcept {
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    return fail(Error{ErrorCode::kFailed, "", "there is not enough memory"});
+    return fail(Error{ErrorCode::kFailed, "", "there is not enough memory; free some, or use a smaller mesh"});
   } catch (const std::exception& e) {
     return fail(Error{ErrorCode::kFailed, "", e.what()});
   } catch (...) {

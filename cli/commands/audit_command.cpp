@@ -87,8 +87,8 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       input_table(options.input, kRefusedByAudit),
       {{"--rule NAME",
         &options.rule,
-        "the rule by which viewers interpolate normals between keyframes\nOne of gltf (default for glTF), lerp, nlerp "
-        "(default for all other inputs), slerp, step and flat",
+        "judge normals that are interpolated between keyframes by this rule\nOne of gltf (default for glTF), lerp, "
+        "nlerp (default for all other inputs), slerp, step and flat",
         {.rare = true}}},
       options.judge.table("judge the normals that these viewers render"),
       {{"--tolerance DEG", &options.limits.degrees,

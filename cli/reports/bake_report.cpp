@@ -467,9 +467,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
       const Audit& after = report.audit->after;
       are_all_known = after.is_judged() && after.error.cancelled == 0 && after.error.unlit == 0;
     }
-    text += are_all_known
-                ? "exact at every instant" + beside_curves(bake) + '\n'
-                : "exact, except around some vertices where the normals of faces cancel or no face has an area\n";
+    text += are_all_known ? "the normals are exact at every instant" + beside_curves(bake) + '\n'
+                          : "the normals are exact, except around some vertices where the normals of faces cancel each "
+                            "other or no face has an area\n";
   } else
     text +=
         formatted("{}: the error is at most {} degrees, {}\n",

@@ -60,9 +60,7 @@ void end_for_want_of_memory() {
 
 void end_by_error() {
   remove_temporaries();
-  end_line_and_say(
-      "the program has run out of memory, or has an error; try a smaller part of the input, and report this if it "
-      "remains");
+  end_line_and_say("out of memory, or an error in the program; try a smaller part of the input, or report the problem");
   end_now(kExitFailed);
 }
 

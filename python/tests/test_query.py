@@ -27,7 +27,7 @@ class QueryTest(unittest.TestCase):
 
     def test_a_span_is_in_the_times_of_the_keyframes(self):
         self.assertEqual(cn.collapse(KEYFRAMES, FACES, times=[0, 2, 3], start=2)["segment"].tolist(), [1])
-        with self.assertRaisesRegex(ValueError, "--to: the time must be later than --from"):
+        with self.assertRaisesRegex(ValueError, "--to: the time must be later than that of --from"):
             cn.collapse(KEYFRAMES, FACES, start=1, end=1)
 
     def test_fronts_are_intervals(self):

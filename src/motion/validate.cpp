@@ -22,12 +22,14 @@ const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::Se
     case MotionKind::kSequence:
       return keys.from == segment && keys.to == segment + 1
                  ? nullptr
-                 : "a segment of a sequence must go from its keyframe to the next one";
+                 : "segment k of a sequence must go from keyframe k to keyframe k + 1";
     case MotionKind::kTargets:
-      return keys.from == 0 && keys.to == segment + 1 ? nullptr
-                                                      : "a target must go from keyframe 0 to a keyframe of its own";
+      return keys.from == 0 && keys.to == segment + 1
+                 ? nullptr
+                 : "segment k of a set of targets must go from keyframe 0 to keyframe k + 1";
     case MotionKind::kAnimation:
-      return keys.to == keys.from + 1 ? nullptr : "a segment of an animation must go from a keyframe to the next one";
+      return keys.to == keys.from + 1 ? nullptr
+                                      : "a segment of an animation must go from a keyframe k to keyframe k + 1";
   }
   return nullptr;
 }
@@ -44,7 +46,9 @@ Status check_residuals(const Motion& motion, std::size_t k) {
   const Motion::Keyframe& keyframe = motion.keyframes[k];
   if (keyframe.residuals.empty()) return Success{};
   if (keyframe.residuals.size() != keyframe.positions.size())
-    return invalid_input(keyframe_place(motion, k), "the keyframe must have one residual for each coordinate");
+    return invalid_input(
+        keyframe_place(motion, k),
+        "the keyframe must have one residual (what rounding to float32 left over) for each coordinate");
   for (std::size_t i = 0; i < keyframe.residuals.size(); ++i) {
     if (static_cast<float>(double{keyframe.positions[i]} + keyframe.residuals[i]) != keyframe.positions[i])
       return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),

@@ -194,7 +194,7 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   EXPECT_TRUE(validate(motion).ok());
   motion.connect_as_sequence();
   motion.kind = MotionKind::kTargets;
-  expect_invalid(motion, "segment 1", "from keyframe 0 to a keyframe of its own");
+  expect_invalid(motion, "segment 1", "from keyframe 0 to keyframe k + 1");
   motion.segments = {{0, 1}};
   expect_invalid(motion, "", "1 segment, which does not fit its 3 keyframes");
   motion.kind = MotionKind::kAnimation;

@@ -23,7 +23,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kNoneMatches = "no file has this name or matches this pattern";
-constexpr std::string_view kTopologyMustNotChange = "; give keyframes that all have the same faces";
+constexpr std::string_view kTopologyMustNotChange = "; give files that all have the same faces";
 
 // Removes the digits at the beginning of the text, and returns them without their leading zeros.
 std::string_view take_number(std::string_view& text) {

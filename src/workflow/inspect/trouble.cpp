@@ -92,8 +92,9 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
   troubles.in_segments("collapses", others, " lose", " all area between two keyframes", true,
                        found.turned_over.pairs > 0 ? "the normal flips, or is lost for an instant and comes back"
                                                    : "the normal is lost for an instant and comes back");
-  troubles.in_segments("turns_far", found.turned_far, " turn", " by more than 90 degrees between two keyframes", false,
-                       "interpolated normals have their largest errors there; compare shows how large");
+  troubles.in_segments(
+      "turns_far", found.turned_far, " turn", " by more than 90 degrees between two keyframes", false,
+      "interpolated normals have their largest errors there; chronormal compare shows how large these are");
   troubles.at_keyframes("sliver", found.slivers, " almost no area at a keyframe",
                         "the faces are so thin that the rounding of positions decides where the normal points");
 }

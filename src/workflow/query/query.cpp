@@ -41,8 +41,8 @@ double t_towards(const Segment& segment, double time, double end) {
 Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
                "the motion has nothing " + std::string(option == std::string("--from") ? "after " : "before ") +
-                   rounded_text(time, {first, last}) + "; it goes from " + rounded_text(first, {time, last}) + " to " +
-                   rounded_text(last, {time, first})};
+                   rounded_text(time, {first, last}) + "; the motion goes from " + rounded_text(first, {time, last}) +
+                   " to " + rounded_text(last, {time, first})};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::size_t QueryColumn::rows() const noexcept {
 Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   const double from = span.from.value_or(-kEndless), to = span.to.value_or(kEndless);
-  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the time must be later than --from"};
+  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the time must be later than that of --from"};
   std::vector<SegmentPart> parts;
   double first = kEndless, last = -kEndless;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {

@@ -251,8 +251,8 @@ TEST(GltfEditFiles, buffer_outside_the_folder_is_not_taken_along_unless_allowed)
   const Result<GltfDocument> refused = GltfDocument::open(path);
   ASSERT_TRUE(refused.ok());
   EXPECT_EQ(bytes_or_error(GltfEdit(refused.value()), folder / "in/y.glb"),
-            "x.gltf, /buffers/0/uri: the uri leads out of the folder of the glTF file, which is refused for safety; "
-            "--allow-external reads it");
+            "x.gltf, /buffers/0/uri: the uri leads out of the folder of the glTF file, which is refused for safety; if "
+            "you trust the file, add --allow-external");
   GltfOptions options;
   options.allow_external = true;
   const Result<GltfDocument> allowed = GltfDocument::open(path, options);

@@ -179,10 +179,10 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
       "http://localhost/own.bin",
       "the uri is a web address or another scheme; copy the file beside the glTF file and refer to it by name");
   expect_error(asset_ + "/own.bin",
-               "the uri is an absolute path, which is refused for safety; --allow-external reads it");
-  expect_error(
-      "up/secret.bin",
-      "the uri leads out of the folder of the glTF file, which is refused for safety; --allow-external reads it");
+               "the uri is an absolute path, which is refused for safety; if you trust the file, add --allow-external");
+  expect_error("up/secret.bin",
+               "the uri leads out of the folder of the glTF file, which is refused for safety; if you trust the file, "
+               "add --allow-external");
   expect_error("none.bin", "this file is missing: " + asset_ + "/none.bin");
   expect_error("pipe.bin", asset_ + "/pipe.bin is not a regular file");
   expect_error("short.bin", "the file has 3 bytes, but byteLength is " + size);

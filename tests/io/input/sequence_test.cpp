@@ -274,14 +274,13 @@ TEST(ReadSequence, topology_that_changes_is_an_error_with_frame_and_face) {
     return error.text();
   };
   EXPECT_EQ(third(obj(2, "f 1 2 3\nf 1 3 2\n")),
-            "frame 2 (w_2.obj): face 1 differs from frame 0; give keyframes that all have the same faces");
+            "frame 2 (w_2.obj): face 1 differs from frame 0; give files that all have the same faces");
   EXPECT_EQ(third(obj(2, "f 1 2 3\nf 1 2 3 4\n")),
-            "frame 2 (w_2.obj): face 1 differs from frame 0; give keyframes that all have the same faces");
+            "frame 2 (w_2.obj): face 1 differs from frame 0; give files that all have the same faces");
   EXPECT_EQ(third(obj(2, "f 1 2 3\n")),
-            "frame 2 (w_2.obj): this mesh has 1 face, but frame 0 has 2; give keyframes that all have the same faces");
-  EXPECT_EQ(
-      third("v 9 9 9\n" + obj(2)),
-      "frame 2 (w_2.obj): this mesh has 5 vertices, but frame 0 has 4; give keyframes that all have the same faces");
+            "frame 2 (w_2.obj): this mesh has 1 face, but frame 0 has 2; give files that all have the same faces");
+  EXPECT_EQ(third("v 9 9 9\n" + obj(2)),
+            "frame 2 (w_2.obj): this mesh has 5 vertices, but frame 0 has 4; give files that all have the same faces");
 }
 
 TEST(ReadSequence, error_inside_a_file_has_the_frame_in_its_place) {

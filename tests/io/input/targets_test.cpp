@@ -171,7 +171,7 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
   EXPECT_EQ(place_of("e.stl", "solid\n"), folder_ / "e.stl");
   const Error faces = error_of(read({folder_.write("f.obj", kSquareObj.substr(0, 32) + "f 1 3 2\nf 1 3 4\n")}));
   EXPECT_EQ(faces.text(),
-            folder_ / "f.obj" + ": face 0 differs from the base; give keyframes that all have the same faces");
+            folder_ / "f.obj" + ": face 0 differs from the base; give files that all have the same faces");
 
   const Error missing = error_of(read({folder_ / "no.target"}));
   EXPECT_EQ(missing.code, ErrorCode::kFailed);

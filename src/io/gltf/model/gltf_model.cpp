@@ -100,7 +100,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
-  if (!asset) return root.complain("asset", "this is not a glTF 2.0 file, since it has no asset");
+  if (!asset) return root.complain("asset", "this is not a glTF 2.0 file, since its JSON has no asset");
   // A file may set minVersion to the version of glTF that its readers must support. This reader supports only 2.0.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
   if (!version.starts_with("2."))

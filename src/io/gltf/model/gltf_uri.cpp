@@ -140,10 +140,11 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
   const fs::path& path_in_uri = relative.value();
   if (!allow_external && !folder)
     return invalid_input(place,
-                         "the glTF file came from standard input, so the folder of its other files is unknown; "
-                         "--allow-external looks in the current folder");
+                         "the glTF file came from standard input, so the folder of its other files is unknown; add "
+                         "--allow-external to look in the current folder");
   if (!allow_external && path_in_uri.has_root_path())
-    return invalid_input(place, "the uri is an absolute path, which is refused for safety; --allow-external reads it");
+    return invalid_input(
+        place, "the uri is an absolute path, which is refused for safety; if you trust the file, add --allow-external");
 
   const fs::path base = folder && !folder->empty() ? path_of(*folder) : ".";
   const fs::path path = existing(base / path_in_uri, base / path_of(uri));
@@ -151,9 +152,9 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
   const fs::path real_base = fs::canonical(base, code);
   const fs::path real = code ? fs::path() : fs::weakly_canonical(path, code);
   if (!allow_external && (code || !is_inside(real, real_base)))
-    return invalid_input(
-        place,
-        "the uri leads out of the folder of the glTF file, which is refused for safety; --allow-external reads it");
+    return invalid_input(place,
+                         "the uri leads out of the folder of the glTF file, which is refused for safety; if you trust "
+                         "the file, add --allow-external");
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) return invalid_input(place, std::string("this file is missing: ").append(utf8_of(path)));
   if (!fs::is_regular_file(status)) return invalid_input(place, utf8_of(path).append(" is not a regular file"));
