@@ -149,7 +149,8 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
   if (const Status status = check_size(*given, "output"); !status) return status.error();
   const IndexRange range{given->first, given->count};
   if (range.first > size || (range.count != CHRONORMAL_ALL && range.count > size - range.first))
-    return Error{ErrorCode::kUsage, "output.count", "the range goes beyond the last normal"};
+    return Error{ErrorCode::kUsage, "output.count",
+                 "the range goes beyond the last normal; first + count may be at most " + std::to_string(size)};
   if (given->format == CHRONORMAL_FLOAT32) {
     const auto view = view_of(static_cast<float*>(given->data), given->stride, size, "output");
     if (!view) return view.error();

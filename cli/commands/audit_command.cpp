@@ -293,7 +293,7 @@ std::string why_beyond(const Audited& audited) {
   const MotionError& error = audited.audit.error;
   if (!audited.audit.is_judged() && error.cancelled == 0 && error.unlit == 0)
     return "nothing could be judged, since no face that moves has an area; run chronormal inspect to list faces "
-           "without area; run chronormal inspect to list faces without area";
+           "without area";
   return why_beyond(audited, error, worst_label(audited), unlit_label(audited), faint_label(audited),
                     cancelled_label(audited));
 }

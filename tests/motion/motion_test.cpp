@@ -189,7 +189,7 @@ TEST(Motion, kinds_make_segments_of_keyframes) {
 TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   Motion motion = three_keyframes();
   motion.segments = {{0, 1}, {0, 2}};
-  expect_invalid(motion, "segment 1", "from its keyframe to the next one");
+  expect_invalid(motion, "segment 1", "from keyframe k to keyframe k + 1");
   motion.kind = MotionKind::kTargets;
   EXPECT_TRUE(validate(motion).ok());
   motion.connect_as_sequence();
@@ -199,7 +199,7 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   expect_invalid(motion, "", "1 segment, which does not fit its 3 keyframes");
   motion.kind = MotionKind::kAnimation;
   motion.segments = {{0, 2}};
-  expect_invalid(motion, "segment 0", "from a keyframe to the next one");
+  expect_invalid(motion, "segment 0", "from a keyframe k to keyframe k + 1");
 }
 
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }
