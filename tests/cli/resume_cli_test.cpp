@@ -96,7 +96,8 @@ TEST_F(Resume, a_journal_of_another_run_is_refused_with_what_differs) {
   const std::string journal = file("out.journal"), partial = file("out.partial");
   const ProcessResult weighted = run(command + " --weighting angle");
   EXPECT_EQ(weighted.exit_code, 2);
-  EXPECT_NE(weighted.err.find("--weighting was 'area' then and is 'angle' now"), std::string::npos) << weighted.err;
+  EXPECT_NE(weighted.err.find("--weighting was 'area' in that run and is 'angle' now"), std::string::npos)
+      << weighted.err;
   EXPECT_NE(run(command + " --length area").err.find("--length was 'unit'"), std::string::npos);
   EXPECT_NE(run("sample w_0.obj w_1.obj --times 0:0.125:1 --format npy --resume -o out").err.find("INPUT was"),
             std::string::npos);
