@@ -92,7 +92,8 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
         {.rare = true}}},
       options.judge.table("judge the normals that these viewers render"),
       {{"--tolerance DEG", &options.limits.degrees,
-        "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names"},
+        "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names. "
+        "Without this option there is no limit"},
        {"--tears N", &options.limits.torn_edges,
         "exit with code 4 if more than N edges are torn at one moment\nAn edge of a glTF file is torn if errors jump "
         "by more than 10 degrees across it, which looks like a fold that the surface does not have"},

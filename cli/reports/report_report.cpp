@@ -31,7 +31,7 @@ std::string places_table(const Report& report) {
   Table table;
   table.add_column("worst place", "", Align::kLeft);
   table.add_column("at", "", Align::kLeft);
-  table.add_column("off by", "degrees", Align::kRight);
+  table.add_column("error", "degrees", Align::kRight);
   for (std::size_t i = 0; i < std::min(kMostPlaces, report.worst.size()); ++i) {
     const ReportPlace& place = report.worst[i];
     table.add_row({place.label, printable(place.moment, kLongestName), judged_degrees(place.degrees)});

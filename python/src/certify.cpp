@@ -8,7 +8,7 @@ py::dict certify_faces(const Array<float>& from, const Array<float>& to, const A
                        const Array<std::uint32_t>& corners, const std::string& scheme, int threads) {
   const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
   if (first.count != last.count)
-    refuse("p1", "p1 must have as many positions as p0, " + std::to_string(first.count) + ", but has " +
+    refuse("p1", "p1 must have as many positions as p0, which has " + std::to_string(first.count) + ", but p1 has " +
                      std::to_string(last.count));
   const ChosenThreads chosen(threads);
   Motion motion;

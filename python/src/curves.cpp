@@ -151,8 +151,8 @@ class Blend : public ZeroedObject {
       const std::size_t count = vectors_of(deltas, place).count;
       if (vertices.size() == 0 && count > 0) {
         if (!(count == view.count))
-          refuse(place, "the target must have a delta for each vertex of the mesh, " + std::to_string(view.count) +
-                            ", but has " + std::to_string(count));
+          refuse(place, "the target must have a delta for each vertex of the mesh, which has " +
+                            std::to_string(view.count) + ", but the target has " + std::to_string(count));
         set.targets.push_back(BlendTarget::from_dense({deltas.data(), 3 * count}));
         continue;
       }

@@ -297,7 +297,8 @@ Opened open(const py::dict& source, KeepShading shading) {
   Opened opened;
   if (const py::object motion = source["motion"]; !motion.is_none()) {
     opened.made = &motion.cast<const ReadMotion&>();
-    require(!opened.made->motion().segments.empty(), "source", "the mesh does not move, so there is nothing to judge");
+    require(!opened.made->motion().segments.empty(), "source",
+            "the mesh does not move, so there is nothing to judge; give a motion");
     opened.kept = motion;
   } else {
     opened.input.emplace(open_files(source, false, shading));

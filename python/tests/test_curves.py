@@ -186,7 +186,7 @@ class BlendTest(unittest.TestCase):
         base, target, faces = sheet()
         blend = cn.blend(base, [target - base], faces)
         for call, words in ((lambda: blend.unit_normals([1, 2]), r"weights: the shape must be \(1,\) or \(T, 1\), but is \(2,\)"),
-                            (lambda: cn.blend(base, [target[:3]], faces), r"deltas\[0\]: the target must have a delta for each vertex of the mesh, 12, but has 3"),
+                            (lambda: cn.blend(base, [target[:3]], faces), r"deltas\[0\]: the target must have a delta for each vertex of the mesh, which has 12, but the target has 3"),
                             (lambda: cn.blend(base, [([5, 2], target[:2])], faces), "target 0, entry 1"),
                             (lambda: cn.blend(base, [([99], target[:1])], faces), "target 0, entry 0"),
                             (lambda: cn.blend(base, [([1, 2], target[:1])], faces), "target 0"),

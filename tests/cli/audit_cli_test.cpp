@@ -640,7 +640,7 @@ TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
   folder_.write("uniform.glb", mesh.file().glb());
   expect_words(text_of("uniform.glb"),
                {"\n  true normals are uniform-weighted, as the base normals of the file are\n",
-                "from uniform-weighted normals, which they follow; the average from area-weighted normals would be "});
+                "from uniform-weighted normals, which your normals follow; on average they are "});
   const Json detected = json_of("uniform.glb"), asked = json_of("uniform.glb --weighting area");
   EXPECT_EQ(detected["weighting"], "uniform");
   EXPECT_EQ(detected["subjects"][0]["weighting"], "uniform");

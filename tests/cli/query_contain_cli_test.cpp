@@ -81,7 +81,8 @@ TEST_F(QueryContainCli, refusals_say_what_is_wrong) {
   };
   folder_.write("open2.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   expect("open.obj open2.obj --points rest.npy", 3,
-         "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only");
+         "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only (fill "
+         "such holes)");
   expect("a.obj b.obj", 2, "--points: the points are missing; name a .npy file of points");
   expect("a.obj b.obj --points none.npy", 1, "none.npy: ");
   expect("a.obj b.obj --points a.obj", 3, "a.obj, header: this is not a NumPy array");

@@ -126,7 +126,8 @@ TEST_F(ReportCli, a_file_without_targets_is_refused_with_what_to_do) {
 
 TEST_F(ReportCli, keyframes_that_do_not_move_are_refused) {
   folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_error(run("a.obj a.obj -o still.bin"), 3, "nothing moves in this input, so there is nothing to show");
+  expect_error(run("a.obj a.obj -o still.bin"), 3,
+               "nothing moves in this input, so there is nothing to show; give a motion");
 }
 
 TEST_F(ReportCli, a_mesh_whose_normals_stay_right_has_no_worst_places) {

@@ -214,7 +214,8 @@ vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::Interpolate(const Step
   if (const auto blocks = all_as<vtkCompositeDataSet>(steps)) return this->InterpolateBlocks(*blocks, request);
   if (const auto data = all_as<vtkDataSet>(steps)) return this->InterpolateMesh(*data, request);
   vtkErrorMacro(<< request.place << "A " << steps[request.from]->GetClassName() << " and a "
-                << steps[request.from + 1]->GetClassName() << " cannot be interpolated.");
+                << steps[request.from + 1]->GetClassName()
+                << " cannot be interpolated. Give both steps data of the same type.");
   return nullptr;
 }
 

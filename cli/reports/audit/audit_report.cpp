@@ -206,8 +206,8 @@ std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
                 degrees(offset.worst), weighting, offset.of_polygons ? " of polygons" : "");
   if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
   if (offset.is_detected && offset.weighting != Weighting::kArea)
-    text +=
-        formatted(", which they follow; the average from area-weighted normals would be {}", degrees(offset.area_mean));
+    text += formatted(", which your normals follow; on average they are {} degrees from area-weighted ones",
+                      degrees(offset.area_mean));
   else if (!offset.is_detected && offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
     text += formatted("; --weighting {} is closer, {} on average, {} at worst", weighting_name(offset.closest),
                       degrees(offset.closest_mean), degrees(offset.closest_worst));

@@ -316,7 +316,8 @@ Result<Containment> Containment::make(const Topology& topology, const Points& po
   if (const EdgeFaults faults = find_edge_faults(topology, points); faults.boundary + faults.unbalanced > 0) {
     std::string message = "the mesh is not closed, so points cannot be inside it; ";
     if (faults.boundary > 0)
-      message += counted(faults.boundary, "edge has a face on one side only", "edges have a face on one side only");
+      message += counted(faults.boundary, "edge has a face on one side only (fill such holes)",
+                         "edges have a face on one side only (fill such holes)");
     if (faults.boundary > 0 && faults.unbalanced > 0) message += ", and ";
     if (faults.unbalanced > 0)
       message += counted(faults.unbalanced, "edge lies", "edges lie") +

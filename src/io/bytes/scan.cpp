@@ -53,7 +53,8 @@ Status check_text(std::string_view bytes, const std::string& name) {
     const std::size_t zeros = std::min(page.find_first_not_of('\0'), page.size());
     if (zeros == kPage)
       return invalid_input(binary::place(name, at),
-                           "this is not a text file, or it is damaged: thousands of zero bytes begin here");
+                           "this is not a text file, or it is damaged, since thousands of zero bytes begin here; copy "
+                           "or export the file again");
     at += zeros;
   }
   return Success{};

@@ -200,7 +200,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
   } else {
     if (member.size / kMostPerByte > packed.size() + kSlack)
       return damaged("the array is damaged, since its " + counted(packed.size(), "byte", "bytes") +
-                     " cannot unpack to " + grouped(member.size));
+                     " cannot unpack to " + counted(member.size, "byte", "bytes"));
     const auto wanted = static_cast<std::size_t>(std::min(most, member.size));
     bool at_end = false;
     storage = inflate_some(packed, wanted, at_end);

@@ -115,7 +115,8 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   if (source.influence_fault) return *source.influence_fault;
   const std::vector<gltf::InfluenceSource>& sets = source.influences;
   if (sets.empty())
-    return invalid_input(state.bytes.place(pointer), "the mesh has a skin, but its vertices have no joints (JOINTS_0)");
+    return invalid_input(state.bytes.place(pointer),
+                         "the mesh has a skin, but its vertices have no joints (JOINTS_0); export the file again");
   // All sets of joints and weights may use the same accessor, so a small file could ask for much memory. The limit of
   // expansion is therefore checked.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));

@@ -91,7 +91,7 @@ Result<Header> HeaderReader::read() {
   while (next_words()) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") {
-      if (words.size() != 1) return error("the line end_header must have no other words");
+      if (words.size() != 1) return error("the line end_header must have no other words; remove them");
       if (!has_format_) return error("the header has no line that begins with 'format'");
       header_.body_begin = lines_.position();
       header_.line_count = lines_.number();
@@ -100,7 +100,7 @@ Result<Header> HeaderReader::read() {
     }
     if (Status status = read_statement(words); !status) return status.error();
   }
-  return error("the header does not end, since the line end_header is missing");
+  return error("the header does not end, since the line end_header is missing; export the file again");
 }
 
 Status HeaderReader::read_statement(const Words& words) {
@@ -185,7 +185,7 @@ Status HeaderReader::assign_role(Property& property) {
       return error("the property " + scan::quoted(property.name) + " must be a list of integers");
     for (const Property& other : element.properties) {
       if (other.role == Role::kIndices)
-        return error("the faces have both vertex_indices and vertex_index; keep one of them");
+        return error("the faces have both vertex_indices and vertex_index; remove one of the two properties");
     }
     property.role = Role::kIndices;
   }

@@ -21,8 +21,9 @@ Result<ElementKind> make_element_kind(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (kNames[i] == name) return static_cast<ElementKind>(i);
   }
-  return Error{ErrorCode::kUsage, "",
-               std::string("there are no elements '").append(name).append("'; choose faces, vertices or corners")};
+  return Error{
+      ErrorCode::kUsage, "",
+      std::string("there is no kind of elements '").append(name).append("'; choose faces, vertices or corners")};
 }
 
 Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options) {

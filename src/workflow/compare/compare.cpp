@@ -449,7 +449,8 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     each.assign(rows.size(), std::vector<float>(samples * all.count()));
   }
   if (run.is_divided() && (options.keep_errors || options.keep_samples))
-    return Error{ErrorCode::kUsage, "", "a run with --shard or --resume cannot keep the error of every sample"};
+    return Error{ErrorCode::kUsage, "",
+                 "a run with --shard or --resume cannot keep the error of every sample; leave one of the two out"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());

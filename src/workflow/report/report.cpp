@@ -176,7 +176,7 @@ Result<Report> report(Input& input, const ReportOptions& options) {
     constexpr const char* kStillDocument =
         "the file has no morph target that moves a surface with normals, so there is nothing to show; export shape "
         "keys (blend shapes) as morph targets with normals";
-    constexpr const char* kStillMotion = "nothing moves in this input, so there is nothing to show";
+    constexpr const char* kStillMotion = "nothing moves in this input, so there is nothing to show; give a motion";
     return invalid_input(input.name(), input.document() != nullptr ? kStillDocument : kStillMotion);
   }
   model.worst = find_worst_places(model.parts);

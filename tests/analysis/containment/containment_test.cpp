@@ -388,7 +388,8 @@ TEST(Containment, faces_of_any_number_of_corners_and_seams_are_closed) {
   const Result<Containment> apart = Containment::make(topology, separate_points(24), view(xyz));
   ASSERT_FALSE(apart.ok());
   EXPECT_EQ(apart.error().text(),
-            "face 0: the mesh is not closed, so points cannot be inside it; 24 edges have a face on one side only");
+            "face 0: the mesh is not closed, so points cannot be inside it; 24 edges have a face on one side only "
+            "(fill such holes)");
 }
 
 TEST(Containment, a_mesh_that_is_not_closed_is_refused_with_its_edges_counted) {
@@ -401,14 +402,15 @@ TEST(Containment, a_mesh_that_is_not_closed_is_refused_with_its_edges_counted) {
     return made.error().text();
   };
   EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3}),
-            "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only");
+            "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only (fill "
+            "such holes)");
   EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 2, 3}),
             "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between faces whose corners "
             "run in opposite orders (flip such faces)");
   EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 2, 0, 3}),
             "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between faces whose corners "
             "run in opposite orders (flip such faces)");
-  EXPECT_EQ(refusal({0, 1, 2, 1, 0, 3, 0, 1, 3}).find("2 edges have a face on one side only"),
+  EXPECT_EQ(refusal({0, 1, 2, 1, 0, 3, 0, 1, 3}).find("2 edges have a face on one side only (fill such holes)"),
             std::string("face 0: the mesh is not closed, so points cannot be inside it; ").size());
 }
 

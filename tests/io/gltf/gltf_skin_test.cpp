@@ -198,7 +198,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
          numbers[5] = INFINITY;
          s.binds(numbers, 2);
        }},
-      {attributes + ": the mesh has a skin, but its vertices have no joints (JOINTS_0)",
+      {attributes + ": the mesh has a skin, but its vertices have no joints (JOINTS_0); export the file again",
        [](Skinned& s) {
          s.attributes().erase("JOINTS_0");
          s.attributes().erase("WEIGHTS_0");

@@ -179,7 +179,7 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   };
   EXPECT_EQ(error_of("plx\n"), "walk.ply, line 1: this is not a PLY file, since its first line is not the word ply");
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
-            "walk.ply, line 2: the header does not end, since the line end_header is missing");
+            "walk.ply, line 2: the header does not end, since the line end_header is missing; export the file again");
   EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"),
             "walk.ply, line 3: the header has no line that begins with 'format'");
   EXPECT_EQ(with("ascii 1.0", "ascii 1.1"),
@@ -210,7 +210,7 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   EXPECT_EQ(with("format ascii 1.0", "format ascii 1.0\nformat ascii 1.0"),
             "walk.ply, line 3: the header has two lines that begin with format; remove one of them");
   EXPECT_EQ(with("vertex_indices", "vertex_indices\nproperty list uchar int vertex_index"),
-            "walk.ply, line 9: the faces have both vertex_indices and vertex_index; keep one of them");
+            "walk.ply, line 9: the faces have both vertex_indices and vertex_index; remove one of the two properties");
   EXPECT_EQ(with("float z", "list char float z"),
             "walk.ply, line 6: the coordinate 'z' is a list, but must be a number");
   EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z");

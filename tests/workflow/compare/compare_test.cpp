@@ -193,7 +193,7 @@ TEST(Compare, refuses_what_makes_no_table) {
   CompareRun run;
   run.shard = Shard{};
   EXPECT_EQ(compare(stream, each_sample, run).error().text(),
-            "a run with --shard or --resume cannot keep the error of every sample");
+            "a run with --shard or --resume cannot keep the error of every sample; leave one of the two out");
 }
 
 // The elements of the oracle: the corners of each element, and the first vertex or corner that belongs to it.

@@ -73,7 +73,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
     extra.linear.push_back({j, 1});
     for (const std::size_t i : own) extra.quadratic.push_back({i, j, -1});
   } else {
-    factors->complain("both factors are \"base\", but one must be a target");
+    factors->complain("both factors are \"base\", but one must be a target; bake the original file again");
   }
 }
 
@@ -86,7 +86,8 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
   };
   for (std::size_t n = 1; n < extras.size(); ++n) {
     if (extras[n].target <= extras[n - 1].target)
-      return list[n].complain("target", "correction targets must be listed in ascending order");
+      return list[n].complain("target",
+                              "correction targets must be listed in ascending order; bake the original file again");
   }
   for (std::size_t n = 0; n < extras.size(); ++n) {
     const bool follows_extras =
@@ -94,7 +95,8 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
         std::any_of(extras[n].quadratic.begin(), extras[n].quadratic.end(),
                     [&](const auto& t) { return is_extra(t.i) || is_extra(t.j); });
     if (follows_extras)
-      return list[n].complain("a correction target must not be computed from another correction target");
+      return list[n].complain(
+          "a correction target must not be computed from another correction target; bake the original file again");
   }
 }
 
@@ -129,7 +131,8 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   mark.author = read_flag(view, value, "author");
   const std::vector<JsonView> extras = items_of(view, value, "extras");
   if (extras.size() > target_count) {
-    view.complain("extras", "the list has more correction targets than the mesh has targets");
+    view.complain("extras",
+                  "the list has more correction targets than the mesh has targets; bake the original file again");
     return mark;
   }
   for (const JsonView& item : extras) {

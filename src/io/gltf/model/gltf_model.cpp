@@ -429,7 +429,8 @@ void Parser::connect_nodes() {
       if (!model_.nodes[at].parent) break;
       at = *model_.nodes[at].parent;
       if (seen_from[at] == mark)
-        return complaint_.add(node_pointer(at), "the node is its own parent, directly or by other nodes");
+        return complaint_.add(node_pointer(at),
+                              "the node is its own parent, directly or through other nodes; export the file again");
     }
   }
 }

@@ -56,7 +56,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
   };
   const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
   if (is_unknown || (node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {
-    target.complain("the channel drives " + pointer + ", which the file does not have");
+    target.complain("the channel drives " + pointer + ", which the file does not have; remove the channel");
     return {};
   }
   if (node) return {{*node}, driven.target};
@@ -91,7 +91,8 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
     }
     if (driven.nodes.empty()) return;
     const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
-    if (known.contains(weights)) return target->complain("another channel of this animation drives the same weights");
+    if (known.contains(weights))
+      return target->complain("another channel of this animation drives the same weights; remove one of the two");
     for (const std::size_t node : driven.nodes) {
       if (driven.target)
         lone[node].push_back({c, *driven.target});
@@ -171,9 +172,10 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
     const bool is_known = std::any_of(result.tracks.begin(), result.tracks.end(),
                                       [&](const GltfTrack& other) { return other.node == node; });
     if (weight.target >= target_count)
-      return target.complain("the channel drives " + pointer_of(target) + ", which the file does not have");
+      return target.complain("the channel drives " + pointer_of(target) +
+                             ", which the file does not have; remove the channel");
     if (is_known || (!source.elements.empty() && source.elements.back().target == weight.target))
-      return target.complain("another channel of this animation drives the same weights");
+      return target.complain("another channel of this animation drives the same weights; remove one of the two");
     GltfTrack of_weight;
     TrackSource read;
     if (!parse_sampler(animation, weight.channel, Use::kWeights, 1, of_weight, read)) return;
@@ -229,7 +231,8 @@ void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChan
         std::find_if(kPaths.begin(), kPaths.end(), [&](const auto& known_path) { return known_path.first == path; });
     if (!node || found == kPaths.end()) continue;
     if (!known.emplace(*node, found->second).second)
-      return target->complain("another channel of this animation drives the " + path + " of the same node");
+      return target->complain("another channel of this animation drives the " + path +
+                              " of the same node; remove one of the two");
     if (!std::holds_alternative<NodeTransform>(placement_of(model_, *node)))
       return target->complain("the channel drives the " + path +
                               " of a node that has a matrix; give the node translation, rotation and scale instead");

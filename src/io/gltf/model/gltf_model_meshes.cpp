@@ -35,7 +35,7 @@ void Parser::parse_mesh(const JsonView& item) {
   std::vector<PrimitiveSource> sources;
   mesh.name = item.text("name");
   const std::optional<JsonView> primitives = item.array("primitives");
-  if (!primitives) item.complain("the mesh has no primitives");
+  if (!primitives) item.complain("the mesh has no primitives; remove the mesh, or export the file again");
   for (std::size_t p = 0; primitives && p < primitives->size() && !complaint_.first(); ++p) {
     const JsonView primitive = primitives->item(p);
     if (primitive.is_object()) parse_primitive(primitive, mesh, sources);
@@ -70,7 +70,7 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
   PrimitiveSource source;
   primitive.mode = static_cast<int>(item.count("mode", 6, 4));
   const std::optional<JsonView> attributes = item.object("attributes");
-  if (!attributes) return item.complain("attributes", "the primitive has no attributes");
+  if (!attributes) return item.complain("attributes", "the primitive has no attributes; export the file again");
   if (attributes->size() == 0) return attributes->complain("attributes of a primitive must not be empty");
 
   source.draco = parse_draco(item, *attributes);
@@ -134,14 +134,15 @@ std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& a
   draco.view = view.value_or(0);
   const std::optional<JsonView> ids = found->object("attributes");
   if (!ids) {
-    found->complain("attributes", "the Draco data of the primitive have no attributes");
+    found->complain("attributes", "the Draco data of the primitive have no attributes; export the file again");
     return std::nullopt;
   }
   for (const std::string& key : ids->keys()) {
     if (!attributes.has(key.c_str()))
       ids->complain(key.c_str(), "the Draco data have this attribute, but the primitive does not");
   }
-  if (attributes.has("POSITION") && !ids->has("POSITION")) ids->complain("the Draco data have no POSITION");
+  if (attributes.has("POSITION") && !ids->has("POSITION"))
+    ids->complain("the Draco data have no attribute POSITION; export the file again");
   draco.attributes.position = ids->find_index("POSITION", kAnyId, "attributes");
   draco.attributes.normal = ids->find_index("NORMAL", kAnyId, "attributes");
   draco.attributes.tangent = ids->find_index("TANGENT", kAnyId, "attributes");

@@ -76,7 +76,8 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
     if (!any_far) continue;
     const auto at = static_cast<std::size_t>(std::find_if(some.begin(), some.end(), is_far) - some.begin());
     return invalid_input("keyframe " + std::to_string(key) + ", vertex " + std::to_string((first + at) / 3),
-                         "the vertex is so far from its place in keyframe 0 that float32 cannot hold the difference");
+                         "the vertex is so far from its place in keyframe 0 that float32 cannot hold the difference; "
+                         "scale the mesh down");
   }
   return Success{};
 }
