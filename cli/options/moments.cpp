@@ -271,7 +271,8 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
   const Motion& motion = stream.value()->motion();
   if (asked.stepping) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
-    if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
+    if (segments == 0)
+      return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
     if (steps >= kMostTimes / segments)
       return misuse("--step", "the steps of all segments are more than 1,000,000 moments; take fewer steps");
     return step_moments(motion, steps);

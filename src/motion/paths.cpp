@@ -230,8 +230,10 @@ Status check_path(const Motion& motion, PathKind kind) {
   if (kind == PathKind::kLinear) return Success{};
   if (motion.kind != MotionKind::kSequence)
     return wrong_path(
-        "curved paths are only for sequences of keyframes, since targets move vertices on straight lines");
-  if (motion.segments.empty()) return wrong_path("the mesh does not move, so it has no path; leave --path out");
+        "curved paths are only for sequences of keyframes, since targets move vertices on straight lines; choose the "
+        "path linear");
+  if (motion.segments.empty())
+    return wrong_path("the mesh does not move, so its vertices have no path; leave --path out");
   const bool has_velocities =
       std::any_of(motion.keyframes.begin(), motion.keyframes.end(),
                   [](const Motion::Keyframe& keyframe) { return !keyframe.velocities.empty(); });

@@ -189,7 +189,8 @@ TEST_F(BlendCli, wrong_input_is_exit_3) {
   folder_.write("flat.glb", flat.file().glb());
   const ProcessResult result = run("flat.glb --blend 3");
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_NE(result.err.find("the file has no mesh with both morph targets and normals"), std::string::npos)
+  EXPECT_NE(result.err.find("the file has no mesh with both morph targets and normals; export the mesh with both"),
+            std::string::npos)
       << result.err;
   EXPECT_EQ(run("flat.glb --blend 3 --elements vertices").exit_code, 0);
 }

@@ -434,9 +434,9 @@ class AnimationReader {
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     if (keys_.size() < 2)
-      return invalid_input(
-          document_.name() + ", /animations/" + std::to_string(animation_),
-          "nothing moves in the animation, since its weights have only one key; choose another with --animation");
+      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                           "nothing moves in the animation, since its weights have only one key; choose another "
+                           "animation with --animation");
     return Success{};
   }
 

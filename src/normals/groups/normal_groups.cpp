@@ -235,7 +235,7 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
   for (std::size_t c = 0; c < normal_of_corner.count; ++c) {
     const Vec3f n = normal_of_corner[c];
     if (!std::isfinite(n.x) || !std::isfinite(n.y) || !std::isfinite(n.z))
-      return invalid_input("corner " + std::to_string(c), "the normal is NaN or infinite");
+      return invalid_input("corner " + std::to_string(c), "the normal is NaN or infinite; give finite normals");
   }
 
   CornerSets sets(topology.corner_count());

@@ -163,7 +163,7 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
       return invalid_input(
           place, "the keyframe must have one normal for each of its " + counted(corners, "corner", "corners"));
     if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-      return invalid_input(place, "a normal is NaN or infinite");
+      return invalid_input(place, "a normal is NaN or infinite; export the file again");
   }
   return Success{};
 }

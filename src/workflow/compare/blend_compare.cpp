@@ -404,7 +404,8 @@ Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOpt
                   "this input has no animations, since only glTF files can have them; give a glTF file, or leave "
                   "--animation out");
   if (star.kind != MotionKind::kTargets)
-    return misuse("", "this input has no morph targets to blend, since it is a sequence of keyframes");
+    return misuse(
+        "", "this input has no morph targets to blend, since it is a sequence of keyframes; give a mesh with targets");
   Result<BlendSet> set = blend_set_of(star);
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();
@@ -483,7 +484,8 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
   if (compared.empty()) {
     if (animation)
       return misuse("", "the animation drives no mesh with morph targets and normals; choose another animation");
-    return invalid_input(document.name(), "the file has no mesh with both morph targets and normals");
+    return invalid_input(document.name(),
+                         "the file has no mesh with both morph targets and normals; export the mesh with both");
   }
   if (options.active > most) return misuse("", "no mesh has more than " + counted(most, "target", "targets"));
   const auto progress = [&] {

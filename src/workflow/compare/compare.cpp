@@ -345,10 +345,11 @@ Status check(const CompareOptions& options) {
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("the tolerance must be an angle in degrees, at least 0");
   if (certified && options.access == Access::kSequential)
-    return misuse("bounds can only be computed for random access, not for sequential access");
+    return misuse("bounds can only be computed for random access, not for sequential access; choose random access");
   if (!by_area && options.elements.kind == ElementKind::kFaces)
     return misuse("a weighting has no meaning for normals of faces; choose vertices or corners");
-  if (!by_area && certified) return misuse("bounds can only be computed for normals weighted by area");
+  if (!by_area && certified)
+    return misuse("bounds can only be computed for normals weighted by area; choose this weighting");
   return Success{};
 }
 

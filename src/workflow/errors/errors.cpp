@@ -91,7 +91,9 @@ Status check_errors_output(const std::string& path, bool force) {
 
 Status write_errors(std::span<const ErrorTable> tables, const std::string& path, bool force) {
   if (const Status status = check_errors_output(path, force); !status) return status.error();
-  if (tables.empty()) return invalid_input(path, "there are no errors to write, since nothing could be judged");
+  if (tables.empty())
+    return invalid_input(path,
+                         "there are no errors to write, since nothing could be judged; leave the file of errors out");
   const Result<std::string> bytes = is_ply(path) ? ply_of(tables, path) : npz_of(tables);
   if (!bytes) return bytes.error();
   return write_output(path, bytes.value(), force);

@@ -278,7 +278,7 @@ ComparisonShard read_comparison(const JsonView& part) {
   c.span = read_span(part);
   c.cut = read_cut(part);
   shard.checksums = read_task_checksums(part);
-  if (c.segments == 0) part.complain("segment_count", "the shard has no segments; make it again");
+  if (c.segments == 0) part.complain("segment_count", "the shard has no segments; make the shard again");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
   each_item(part, "schemes", [&](const JsonView& name) {
@@ -300,9 +300,9 @@ ComparisonShard read_comparison(const JsonView& part) {
       segment.complain("the segment must have sums of errors for each scheme and for linear; make this shard again");
     shard.found.push_back(std::move(found));
   });
-  if (c.schemes.empty()) part.complain("the shard has no schemes; make it again");
+  if (c.schemes.empty()) part.complain("the shard has no schemes; make the shard again");
   if (c.tolerance && !is_certified)
-    part.complain("tolerance_degrees", "the shard has a tolerance, but no bounds of errors; make it again");
+    part.complain("tolerance_degrees", "the shard has a tolerance, but no bounds of errors; make the shard again");
   return shard;
 }
 
@@ -359,7 +359,8 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
     JsonComplaint complaint(part.name);
     const JsonView view(json.value(), "", complaint);
     if (!view.is_object() || !view.has("chronormal_part"))
-      return invalid_input(part.name, "this file was not written with --shard, so it cannot be merged");
+      return invalid_input(part.name,
+                           "this file was not written with --shard, so it cannot be merged; give only shards");
     check_part_version(view);
     if (!complaint.first() && !has_its_checksum(part.text)) return invalid_input(part.name, std::string(kDamagedPart));
     const std::string command = view.required_text("command");
@@ -437,7 +438,7 @@ Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
   if (read.value().comparisons.empty())
-    return Error{ErrorCode::kUsage, "", "the files are shards of audit, not of compare"};
+    return Error{ErrorCode::kUsage, "", "the files are shards of audit, not of compare; give the shards of compare"};
   Result<Comparison> all = merge(std::move(read.value().comparisons));
   if (!all) return all.error();
   return NamedComparison{read.value().name, std::move(all).value(), {}};
@@ -446,7 +447,8 @@ Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
 Result<Audit> merge_audit_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
-  if (read.value().audits.empty()) return Error{ErrorCode::kUsage, "", "the files are shards of compare, not of audit"};
+  if (read.value().audits.empty())
+    return Error{ErrorCode::kUsage, "", "the files are shards of compare, not of audit; give the shards of audit"};
   return merge(std::move(read.value().audits));
 }
 

@@ -167,7 +167,7 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
   QueryAnswer answer{"shutter",
                      {{"segments", "segments examined", number(parts.value().size())},
                       {all, all + " in each segment", number(asked)},
-                      {"largest_error", "largest possible error of an average normal (length of the difference)",
+                      {"largest_error", "largest possible error of an average normal, as the length of the difference",
                        *std::max_element(rows.error.begin(), rows.error.end())},
                       {"mean_ends_off",
                        "degrees, average angle between the average normal and the bisector of the normals at both ends",

@@ -55,8 +55,9 @@ Result<WrittenRows> find_written_rows(const std::string& output, std::string_vie
     if (const Status status = file->read(0, start); !status) return status.error();
     const bool is_ours = header.starts_with(start);
     if (is_partial && !is_ours)
-      return Error{ErrorCode::kFailed, partial,
-                   "an interrupted run of this command did not write this file; remove it, or choose another output"};
+      return Error{
+          ErrorCode::kFailed, partial,
+          "this file was not written by an interrupted run of this command; remove the file, or choose another output"};
     std::string block(std::size_t{1} << 20, '\0');
     for (const std::string& record : journal.records()) {
       const std::optional<WrittenRow> row = read_row(record);

@@ -77,7 +77,7 @@ Result<TargetWeight> internal::one_target_of(std::span<const double> weights) {
 }
 
 Result<Moments> step_moments(const Motion& motion, std::size_t steps) {
-  if (motion.segments.empty()) return misuse("the mesh does not move, so there are no steps");
+  if (motion.segments.empty()) return misuse("the mesh does not move, so there are no steps; leave the steps out");
   if (steps == 0) return misuse("the number of steps must be at least 1");
   Moments moments;
   const bool are_targets = motion.kind == MotionKind::kTargets;
@@ -126,12 +126,14 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
         "the length 'area', which is twice the area of the faces, needs the weighting 'area'; choose this weighting, "
         "or "
         "the length 'unit'");
-  if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name one");
+  if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name a scheme");
   if (!options.scheme.empty()) {
     const auto scheme = scheme_for(options.scheme, options.elements.kind);
     if (!scheme) return scheme.error();
     if (options.length == NormalLength::kArea || !by_area)
-      return misuse("a scheme can only be used with the weighting area and the length unit");
+      return misuse(
+          "a scheme can only be used with the weighting area and the length unit; choose these, or leave the scheme "
+          "out");
     if (stream.motion().segments.empty())
       return misuse("the mesh does not move, so a scheme has nothing to interpolate; leave the scheme out");
     if (options.stepping && options.stepping->steps == 0) return misuse("the number of steps must be at least 1");

@@ -301,7 +301,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   Journal* const journal = run.journal;
   if (journal != nullptr && output.format != SampleFormat::kNpy)
     return Error{ErrorCode::kUsage, output.path,
-                 "an interrupted run can only be continued if the output is a .npy file"};
+                 "an interrupted run can only be continued if the output is a .npy file; choose this format"};
   const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
@@ -445,7 +445,8 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
     return Error{ErrorCode::kUsage, output.path,
                  "PLY cannot store normals of corners; write .obj, .npy or .npz instead"};
   if (output.format == SampleFormat::kNpz && run.shard && !run.shard->is_all() && run.peers == nullptr)
-    return Error{ErrorCode::kUsage, output.path, "a shard can only be written as .npy, .ply or .obj"};
+    return Error{ErrorCode::kUsage, output.path,
+                 "a shard can only be written as .npy, .ply or .obj; choose one of these formats"};
   if (run.peers != nullptr && is_stream(output.path))
     return Error{ErrorCode::kUsage, output.path, "several processes cannot write to one stream; name a file"};
   std::vector<std::string> names = {output.path};

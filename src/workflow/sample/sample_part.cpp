@@ -23,7 +23,8 @@ std::string SamplePart::text() const {
 }
 
 Result<SamplePart> SamplePart::read(std::string_view text, const std::string& name) {
-  if (text.empty()) return invalid_input(name, "this file was not written by sample --shard, but is a whole array");
+  if (text.empty())
+    return invalid_input(name, "this file was not written by sample --shard, but is a whole array; give only shards");
   if (!has_its_checksum(text)) return invalid_input(name, std::string(kDamagedPart));
   const Result<nlohmann::json> json = parse_json(text, name, 0, {});
   if (!json) return json.error();

@@ -97,7 +97,7 @@ void check_part_version(const JsonView& part) {
 TaskChecksums read_task_checksums(const JsonView& part) {
   TaskChecksums checksums;
   const std::optional<JsonView> object = part.object("checksums");
-  if (!object) part.complain("checksums", "the shard has no checksums; make it again");
+  if (!object) part.complain("checksums", "the shard has no checksums; make the shard again");
   for (const std::string& name : object ? object->keys() : std::vector<std::string>())
     checksums[name] = static_cast<std::uint32_t>(object->required_count(name.c_str(), 0xFFFFFFFF));
   return checksums;

@@ -316,7 +316,8 @@ TEST(SplitNormals, bad_ones_are_errors_with_a_place) {
   const Topology topology = make_triangles(3, {0, 1, 2});
   EXPECT_EQ(split(topology, {0, 0, 1}).error().text(), "the list of normals has 1 entry for 3 corners");
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(split(topology, {0, 0, 1, 0, nan, 1, 0, 0, 1}).error().text(), "corner 1: the normal is NaN or infinite");
+  EXPECT_EQ(split(topology, {0, 0, 1, 0, nan, 1, 0, 0, 1}).error().text(),
+            "corner 1: the normal is NaN or infinite; give finite normals");
   const std::vector<float> good = {0, 0, 1, 0, 0, 1, 0, 0, 1};
   EXPECT_EQ(split(topology, good, -1).error().code, ErrorCode::kUsage);
   EXPECT_EQ(split(topology, good, 46).error().code, ErrorCode::kUsage);

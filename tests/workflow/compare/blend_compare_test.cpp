@@ -440,7 +440,7 @@ TEST(BlendCompare, files_without_anything_to_compare_say_so) {
   flat.normals.clear();
   flat.targets[0].normals.clear();
   expect_error(try_comparing(flat.file(), {}), ErrorCode::kInvalidInput,
-               "the file has no mesh with both morph targets and normals");
+               "the file has no mesh with both morph targets and normals; export the mesh with both");
   GltfBuilder undriven = random_sheet(2, 4, 1, 0.1).file();
   undriven.add_node(undriven.add_mesh(flat.primitive(undriven)));
   undriven.add_track<float>(undriven.add_animation("turn"), 1, {0, 1}, {0, 1});

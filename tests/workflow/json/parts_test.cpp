@@ -326,7 +326,8 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
       EXPECT_TRUE(cut.error().place.starts_with("cut")) << cut.error().text();
     }
   }
-  EXPECT_EQ(merged({{"a", "{}"}}), "a: this file was not written with --shard, so it cannot be merged");
+  EXPECT_EQ(merged({{"a", "{}"}}),
+            "a: this file was not written with --shard, so it cannot be merged; give only shards");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 6, "command": "bake"})"}}).find("the shard is damaged"),
