@@ -487,7 +487,7 @@ Command bake_command() {
          "list the candidates with their errors, and write nothing\nOnly with --encode smallest"},
         {"--dense-zeros",
          &options->dense_zeros,
-         "write deltas that are zero in full, for programs that cannot read sparse ones, such as Assimp",
+         "write deltas that are zero in full\nFor programs that cannot read sparse accessors, such as Assimp",
          {.rare = true}},
         {"--tolerance DEG", &options->tolerance,
          "the largest error allowed along the animations, in degrees\nWith harmless and exact, correction targets that "

@@ -212,8 +212,8 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
     say("sample",
-        formatted("the result will have {2:.1f} GB, for {0} with {1} each; to make it smaller, give fewer moments",
-                  counted(moments, "moment", "moments"), counted(elements, "normal", "normals"), bytes / 1e9),
+        formatted("the result will have {:.1f} GB, for {} with {} each; to make it smaller, give fewer moments",
+                  bytes / 1e9, counted(moments, "moment", "moments"), counted(elements, "normal", "normals")),
         Tone::kWarning);
 }
 

@@ -125,7 +125,7 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
                       formatted("a closing quote is missing in '{}'; write names as \"NAME\"=WEIGHT", list));
       rest = trimmed(rest);
       if (!rest.starts_with('='))
-        return misuse("--weights", formatted("target '{0}' has no weight; write \"{0}\"=WEIGHT", *name));
+        return misuse("--weights", formatted("target '{}' has no weight; write \"{}\"=WEIGHT", *name, *name));
     }
     more = rest.find(',') != std::string_view::npos;
     std::string_view part = take_part(rest);
@@ -271,8 +271,7 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
   const Motion& motion = stream.value()->motion();
   if (asked.stepping) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
-    if (segments == 0)
-      return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
+    if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
     if (steps >= kMostTimes / segments)
       return misuse("--step", "the steps of all segments are more than 1,000,000 moments; take fewer steps");
     return step_moments(motion, steps);
