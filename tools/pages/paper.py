@@ -405,9 +405,9 @@ def measure_frames(page):
                                                      ["`quadratic` against `optimal`", *over("quadratic", OPTIMAL, times)]])
     saved, excess = over(OPTIMAL, MATRIX, lambda r: percent(1 - r)), over("circle", OPTIMAL, lambda r: r - 1)
     page.says(f"differ by {percent(max(seeds.max() / seeds.min() - 1 for _, seeds, *_ in columns))} at most",
-              f"takes {saved[0]}, {saved[1]}, {saved[2]} and {saved[3]} off", f"({percent(columns[2][3])} of the draws on twist)",
+              f"by {saved[0]}, {saved[1]}, {saved[2]} and {saved[3]} on the four morphs", f"({percent(columns[2][3])} of the draws on twist)",
               f"within {percent(excess[0], 2)}, {percent(excess[1], 1)} and {percent(excess[2], 1)} of the optimum",
-              f"On eversion it is {percent(excess[3])} worse",
+              f"On eversion `circle` is {percent(excess[3])} worse",
               "the best is at " + "{}, {}, {} and {} relative to linear".format(*(ratio(column[0][OPTIMAL]) for column in columns)))
     draw_angle(page)
 
