@@ -115,7 +115,7 @@ def blends(page, run):
     rows = [[f"{active} of {of}" + (", dense" if of == 5 else ""),
              *(text(run.ns("blend" if of == 100 else "dense blend", f"{active} of {of}: {way}")) for way in ways_of)]
             for active, of in ((1, 100), (4, 100), (16, 100), (52, 100), (100, 100), (1, 5), (5, 5))]
-    page.table("blends", ["active targets", "`BlendNormals`", "its `in_float32`", *ways_of[2:]], rows)
+    page.table("blends", ["active targets", "`MeshNormals`", "in float32", *ways_of[2:]], rows)
 
 
 def commands(page):

@@ -4,7 +4,7 @@
 /// A viewer that adds one normal delta per target renders normalize(N + sum_i w_i D_i); the true normal is a quadratic
 /// form in the weights (docs/theory.md, section 14). The comparison includes the deltas of a glTF file, end-point
 /// deltas (exact for each target alone at weight 1), the best deltas by least squares
-/// (analysis/quality/blend_quality.h), and the exact normals of BlendNormals, which have only rounding errors. True
+/// (analysis/quality/blend_quality.h), and the exact normals of MeshNormals, which have only rounding errors. True
 /// normals are cross products of blended positions in double.
 ///
 /// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or the weights of an animation.

@@ -411,6 +411,24 @@ TEST(MeshNormals, blend_shapes_have_the_normals_of_their_positions) {
   }
 }
 
+TEST(MeshNormals, options_limit_the_memory_of_blend_shapes_and_allow_float32) {
+  std::vector<float> deltas(kTo.size());
+  for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] = kTo[i] - kFrom[i];
+  const double weight = 0.3;
+  std::vector<std::size_t> bytes;
+  for (const MeshNormalsOptions& options : {MeshNormalsOptions{}, MeshNormalsOptions{.most_blend_bytes = 0},
+                                            MeshNormalsOptions{.blends_in_float32 = true}}) {
+    MeshNormals normals = MeshNormals::make(pair_of_triangles(), options).value();
+    ASSERT_TRUE(normals.set_targets({pair_of_triangles(), kFrom, {BlendTarget::from_dense(deltas)}}));
+    std::vector<float> shown(3 * normals.size());
+    EXPECT_EQ(normals.unit_normals(std::span(&weight, 1), VectorView<float>::packed(shown)), 0U);
+    expect_direction(shown, 1, face_normal(0, weight) + face_normal(1, weight));
+    bytes.push_back(normals.bytes());
+  }
+  EXPECT_LT(bytes[1], bytes[0]) << "no terms";
+  EXPECT_GT(bytes[2], bytes[0]) << "positions in float32 are kept as well";
+}
+
 // ---- records for vertex buffers -------------------------------------------------------------------------------------
 
 std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
