@@ -146,7 +146,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "If no viewer is chosen, normals are right in the first four and no worse in the other two")
+        _hint(column, "If no viewer is chosen, normals are made right in the first four, and no worse in the others if possible")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")

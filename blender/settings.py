@@ -33,7 +33,7 @@ class Preferences(bpy.types.AddonPreferences):
     viewers: bpy.props.EnumProperty(
         name="Viewers",
         description="The viewers that the file is made for. If none is chosen, it is made for three.js, Babylon.js, PlayCanvas "
-                    "and Bevy, and gets worse in no other",
+                    "and Bevy. Where possible, it gets no worse in the others",
         items=[(name, title, what, 1 << n) for n, (name, title, what) in enumerate(VIEWERS)],
         options={"ENUM_FLAG"},
         default=set(),

@@ -29,7 +29,8 @@ struct Bandwidth {
 
 class BandwidthMeter {
  public:
-  /// Requests the bandwidth at a working set in bytes. append() then adds its measurement to the functions to be timed.
+  /// Requests a measurement of the bandwidth for a working set of this many bytes. append() adds the functions that
+  /// measure it.
   void want(std::size_t working_set);
   /// Appends to `functions` the functions that measure the bandwidths for which want() asked.
   void append(std::vector<Timed>& functions);

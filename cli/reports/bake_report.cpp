@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "chronormal/normals/weighting.h"
 #include "cli/terminal/format.h"
@@ -225,15 +228,25 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
     text += formatted("; the file is {:.2f} times as large", size / static_cast<double>(bake.bytes_of_file));
   }
   text += '\n';
+  // Viewers with the same figures share a line.
   const auto add_others = [&](const std::vector<ViewerRow>& rows, const char* words) {
-    if (rows.empty()) return;
-    const ViewerRow& row = worst_of(rows);
-    text +=
-        formatted("{}{}: on average {} degrees, at worst {}\n", words, titles_of(rows),
-                  rounded_change(row.before.mean, row.after.mean), rounded_change(row.before.worst, row.after.worst));
+    std::vector<std::pair<std::string, std::vector<ViewerRow>>> lines;
+    for (const ViewerRow& row : rows) {
+      const std::string figures =
+          formatted("on average {} degrees, at worst {}", rounded_change(row.before.mean, row.after.mean),
+                    rounded_change(row.before.worst, row.after.worst));
+      const auto line =
+          std::find_if(lines.begin(), lines.end(), [&](const auto& other) { return other.first == figures; });
+      (line == lines.end() ? lines.emplace_back(figures, std::vector<ViewerRow>{}) : *line).second.push_back(row);
+    }
+    for (const auto& [figures, alike] : lines) text += formatted("{}{}: {}\n", words, titles_of(alike), figures);
   };
   add_others(others, "errors in ");
   add_others(left_out, "errors that bake could not make smaller in ");
+  std::erase_if(others, [](const ViewerRow& row) { return row.after.mean <= row.before.mean + kHarmlessTolerance; });
+  if (!others.empty())
+    text += formatted("the file is now worse in {}; if it is shown there, bake the original file with --for {}\n",
+                      titles_of(others), others.front().viewer->name);
   return text;
 }
 

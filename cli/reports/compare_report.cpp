@@ -302,14 +302,15 @@ std::string compare_latex(const std::vector<NamedComparison>& inputs) {
     rows += formatted(" & {:.0f} \\\\\n", row.bytes);
   }
   return text + '\n' +
-         latex_table(columns + "r",
-                     " & \\multicolumn{5}{c}{random access} & \\multicolumn{5}{c}{sequential access} & \\\\\n" +
-                         titles + " & bytes \\\\\n\\hline\n" + rows,
-                     formatted("Elementary operations for each of the {} and time, and the bytes that an evaluation "
-                               "reads. What all share at one time is not counted, and a sine with its cosine is one "
-                               "trigonometric operation.",
-                               elements),
-                     "tab:cost");
+         latex_table(
+             columns + "r",
+             " & \\multicolumn{5}{c}{random access} & \\multicolumn{5}{c}{sequential access} & \\\\\n" + titles +
+                 " & bytes \\\\\n\\hline\n" + rows,
+             formatted("Elementary operations of an evaluation for one of the {0} at one time, and the bytes that "
+                       "it reads. Operations that all {0} share at one time are not counted, and a sine with "
+                       "its cosine is one trigonometric operation.",
+                       elements),
+             "tab:cost");
 }
 
 std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {

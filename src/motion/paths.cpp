@@ -230,8 +230,8 @@ Status check_path(const Motion& motion, PathKind kind) {
   if (kind == PathKind::kLinear) return Success{};
   if (motion.kind != MotionKind::kSequence)
     return wrong_path(
-        "curved paths are only for sequences of keyframes, since targets move vertices on straight lines; choose the "
-        "path linear");
+        "curved paths are only for sequences of keyframes, since targets move vertices on straight lines; leave "
+        "--path out");
   if (motion.segments.empty())
     return wrong_path("the mesh does not move, so its vertices have no path; leave --path out");
   const bool has_velocities =

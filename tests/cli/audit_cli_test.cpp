@@ -662,7 +662,7 @@ TEST_F(AuditCli, every_error_goes_into_a_file_beside_the_report) {
   expect_error("hinge.glb --errors e.npz", 1, "e.npz: ");
   expect_error("hinge.glb --errors e.txt", 2, ".npz or .ply");
   expect_error("hinge.glb hinge.glb --errors f.npz", 2, "--errors: --errors is only for a single input");
-  expect_error("hinge.glb --errors f.npz -o f.npz", 2, "--errors: this file is the same as OUT");
+  expect_error("hinge.glb --errors f.npz -o f.npz", 2, "--errors: this file is also the file of OUT");
   expect_error("a.obj a.obj --errors f.npz", 3, "nothing could be judged");
   EXPECT_EQ(folder_.entry_count(), entries) << "what fails leaves nothing";
 }

@@ -295,7 +295,9 @@ TEST_F(CompareTolerance, the_cheapest_scheme_within_it_is_named) {
 TEST_F(CompareTolerance, where_none_is_within_it_the_exit_code_is_4) {
   const ProcessResult result = run("--schemes linear,slerp --json --tolerance 1");
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_EQ(result.err, "chronormal compare: bend: no scheme is always within the tolerance of 1 degree\n");
+  EXPECT_EQ(result.err,
+            "chronormal compare: bend: no scheme is always within the tolerance of 1 degree; compare more schemes with "
+            "--schemes, or allow a larger --tolerance\n");
   EXPECT_TRUE(Json::parse(result.out)["cheapest"].is_null());
 }
 

@@ -146,7 +146,7 @@ class RanksTest(unittest.TestCase):
         alone = self.run_program("sample small.obj flat.pc2 --times 0:1:6 -o flat.npy --force")
         run = self.run_program("sample small.obj flat.pc2 --times 0:1:6 -o flat.npy --force", 3)
         self.addCleanup(os.remove, "flat.npy")
-        self.assertIn("of 1,008 normals of vertices, 1,008 are (0, 0, 0)", alone.stderr)
+        self.assertIn("of 1,008 normals of vertices, 1,008 are written as (0, 0, 0)", alone.stderr)
         self.assertEqual(run.stderr, alone.stderr)
 
     def test_what_ranks_cannot_divide_is_refused_once(self):

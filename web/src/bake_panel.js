@@ -35,7 +35,7 @@ export function makeBakePanel(input, { plan, bake }) {
   const planned = input.plan && choiceTable({ plan: input.plan.plan });
   if (planned) planned.open = true;
   return panel('Bake', true,
-    h('fieldset', {}, h('legend', {}, 'normals become right in these viewers, and no worse in others'), boxes),
+    h('fieldset', {}, h('legend', {}, 'normals become right in these viewers and, where possible, no worse in others'), boxes),
     number('within', 'tolerance', '0.5', 'degrees'),
     isGltf && number('at most', 'maxTargets', 'any', 'targets'),
     number('at most', 'maxBytes', 'any', 'bytes more'),

@@ -147,8 +147,8 @@ struct AuditSubject {
 struct AuthoredOffset {
   std::optional<std::size_t> mesh;         ///< the number of the mesh in a glTF file
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
-  /// True if the weighting was detected in the stored normals, or if it is the default because the stored normals
-  /// follow no weighting clearly.
+  /// False if the caller chose the weighting. True if the weighting was derived from the stored normals, or if it is
+  /// the default because the stored normals follow no weighting clearly.
   bool is_detected = false;
   std::size_t vertices = 0;  ///< number of vertices that have both a stored and a true normal
   double sum = 0, worst = 0;

@@ -11,8 +11,8 @@ namespace {
 using namespace std::string_view_literals;
 
 struct KnownKind {
-  /// The first bytes of a file of this kind; '?' stands for any byte, and a letter in lower case also for the letter in
-  /// upper case, if the text begins with '<'.
+  /// The first bytes of a file of this kind. '?' stands for any byte. If this text begins with '<', a letter in lower
+  /// case also stands for the letter in upper case.
   std::string_view begin;
   std::string_view name;
   std::string_view formats = {};  ///< the names of formats whose files are of this kind, each between blanks

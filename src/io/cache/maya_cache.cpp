@@ -195,9 +195,10 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   std::vector<std::string> files = {stem + described.extension};
   if (described.has_file_per_frame) {
     if (resolve)
-      return Error{ErrorCode::kUsage, name,
-                   "the cache has a file for each frame, and these can only be found in a folder on disk; name the "
-                   "description file there"};
+      return Error{
+          ErrorCode::kUsage, name,
+          "the cache has a file for each frame, and such files can only be found in a folder on disk; give the path "
+          "of the .xml file in that folder"};
     Result<std::vector<std::string>> found = list_frame_files(path.parent_path(), stem, described.extension);
     if (!found) return found.error();
     files = std::move(found).value();

@@ -31,7 +31,7 @@ struct StoredTerm {
 };
 
 struct StoredPair {
-  std::uint32_t other = 0;  ///< the number of the other target, which comes later
+  std::uint32_t other = 0;  ///< the number of the other target of the pair, which is the larger number
   /// The number of elements that touch a face which both targets move. The term has at most this many elements.
   std::uint32_t elements = 0;
   StoredTerm term;

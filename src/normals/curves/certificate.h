@@ -82,8 +82,8 @@ inline constexpr double kLargestShare = 0x1p-30;
 
 inline constexpr double kDeterminantRounding = 0x1p-44;
 inline constexpr double kSmallestLength = 0x1p-400;  ///< squares of larger lengths neither overflow nor underflow
-/// The smallest relative size of n(t) that stays_certain() proves by Bernstein coefficients; a smaller `certain` is
-/// raised to this size. The square of this size is far above the rounding error of the proof.
+/// The smallest bound of |n(t)|, relative to the lengths of the control normals, that stays_certain() tries to prove by
+/// Bernstein coefficients. The square of this bound is far above the rounding error of the proof.
 inline constexpr double kSmallestProvenShare = 0x1p-20;
 
 /// Returns true if it is proven that n(t) stays above the relative size `certain` at every t, so that double suffices.

@@ -29,7 +29,7 @@ AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
 
 BlendSource::BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
                          std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
-                         MeshSkin* skin)
+                         MeshSkin* skin, std::size_t segments)
     : shading_(shading),
       truth_(truth),
       part_(part),
@@ -40,6 +40,7 @@ BlendSource::BlendSource(const GltfShading& shading, const AuthorTruth& truth, c
       skin_(skin),
       moved_(involved_.size()),
       samples_(samples),
+      segments_(segments),
       sums_(shading, part.outputs(), involved_) {
   std::vector<Vec3d> positions(part.vertices().size());
   place_base(positions);
@@ -59,7 +60,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
     end_ = weights(segment, 1);
   }
   std::vector<double> now = weights(segment, t);
-  const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1);
+  const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1 && segment + 1 < segments_);
   const bool same = known_ && !turns && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
   known_ = true;
   segment_ = segment;

@@ -43,10 +43,11 @@ class BlendSource {
   /// the source. The outputs of the source, which are vertices or corners, are the outputs of the part. If the joints
   /// of the skin move, moment must return the time in seconds. `involved` lists targets in ascending order. `weights`
   /// writes a value for each of these targets, and all other targets always have weight 0. The caller places the source
-  /// at `samples` moments of each segment, in ascending order.
+  /// at `samples` moments of each segment, in ascending order. If joints jump at the end of a segment, their pose before
+  /// the jump is used, but after the last of `segments` segments the pose after the jump, which viewers keep showing.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
-              MeshSkin* skin = nullptr);
+              MeshSkin* skin = nullptr, std::size_t segments = 1);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
   /// Writes the positions of the part at the given weights. Does not change the moment at which the source is placed.
@@ -109,7 +110,7 @@ class BlendSource {
   std::vector<ShownTurn> turns_;  // for each output, how the author's normal is rotated from the geometry's
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
-  std::size_t samples_, segment_ = 0;
+  std::size_t samples_, segments_, segment_ = 0;
   double t_ = 0;
   std::vector<double> now_, start_, end_;
   StoredSums sums_;

@@ -214,7 +214,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
     return std::nullopt;
   }
   BlendSource source(mesh.shading, mesh.truth, part, mesh.rule, involved, weights.specified, moment, subject.samples,
-                     skin);
+                     skin, subject.segments);
   ViewerErrors viewers(mesh.shading, part, mesh.options.viewers, weights.played, involved, skin != nullptr);
   SkinningErrors skinning;
   const auto judge_viewers = [&](const MeasuredSample& sample) {
@@ -340,13 +340,20 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
     if (!moves || t == 0) return times[segment];
     return t == 1 ? times[segment + 1] : (1 - t) * times[segment] + t * times[segment + 1];
   };
+  // Weights that jump at a key are judged just before the jump at the end of a segment, and after the jump at the
+  // beginning of the next segment. At the end of the last segment they are judged after the jump, because viewers keep
+  // showing this pose. Rules that interpolate normals between the ends of a segment need the weights before the jump.
+  const bool shows_last = mesh.rule == AuditRule::kGltf;
+  const auto just_before = [last = subject.segments - 1, shows_last](std::size_t segment, double t) {
+    return t == 1 && (segment < last || !shows_last);
+  };
   SubjectWeights weights;
   weights.specified = of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> of_targets) {
-    curve.at(moment(segment, t), moves && t == 1, of_targets);
+    curve.at(moment(segment, t), just_before(segment, t), of_targets);
   });
   for (const PlayedTrack& by_viewer : played) {
     weights.played.push_back(of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> all) {
-      by_viewer.at(moment(segment, t), moves && t == 1, all);
+      by_viewer.at(moment(segment, t), just_before(segment, t), all);
     }));
   }
   std::optional<MeshSkin> skin;

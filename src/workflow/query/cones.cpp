@@ -126,7 +126,8 @@ Status check_meshlets(const Motion& motion, std::size_t most_triangles) {
     return Error{ErrorCode::kUsage, "--meshlets", "the number of triangles must be a multiple of 4, from 4 to 512"};
   if (!motion.topology.all_triangles())
     return Error{ErrorCode::kUsage, "--meshlets",
-                 "meshlets need a mesh of triangles, but this mesh has larger faces; triangulate it first"};
+                 "meshlets need a mesh of triangles, but this mesh has faces with more than three corners; triangulate "
+                 "it first"};
   return Success{};
 }
 

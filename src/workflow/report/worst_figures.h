@@ -12,8 +12,8 @@
 
 namespace chronormal::inline internal {
 
-/// The number of figures in a page, and the samples of each figure. A page that does not contain the program can show
-/// no other figures. Eight figures take about 40 kB of the page.
+/// The largest number of figures that are stored in a page, and the number of samples of each figure. Only a page with
+/// the program (as WebAssembly) inside can show other figures. Eight figures take about 40 kB of the page.
 inline constexpr std::size_t kMostFigures = 8, kFigureSamples = 21;
 inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
     "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};

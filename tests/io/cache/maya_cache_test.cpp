@@ -218,8 +218,8 @@ TEST(ReadMayaCache, files_for_each_frame_are_not_found_in_memory) {
   ASSERT_FALSE(cache.ok());
   EXPECT_EQ(cache.error().code, ErrorCode::kUsage);
   EXPECT_EQ(cache.error().text(),
-            "c.xml: the cache has a file for each frame, and these can only be found in a folder on disk; name the "
-            "description file there");
+            "c.xml: the cache has a file for each frame, and such files can only be found in a folder on disk; give "
+            "the path of the .xml file in that folder");
 }
 
 }  // namespace

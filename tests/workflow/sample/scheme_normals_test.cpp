@@ -210,7 +210,7 @@ TEST(SchemeNormals, what_has_no_meaning_is_refused) {
   EXPECT_NE(message(by_scheme("quaternion:polar", ElementKind::kVertices)).find("edges of faces"), std::string::npos);
   EXPECT_NE(message(by_scheme("rational", ElementKind::kFaces, Stepping{8})).find("cannot go step by step"),
             std::string::npos);
-  EXPECT_NE(message(by_scheme("", ElementKind::kFaces, Stepping{8})).find("name one"), std::string::npos);
+  EXPECT_NE(message(by_scheme("", ElementKind::kFaces, Stepping{8})).find("name a scheme"), std::string::npos);
   EXPECT_NE(message(by_scheme("linear", ElementKind::kFaces, Stepping{0})).find("at least 1"), std::string::npos);
   SampleOptions weighted = by_scheme("linear", ElementKind::kVertices);
   weighted.weighting = Weighting::kAngle;

@@ -317,7 +317,7 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
   constexpr std::array kNoAttributes = {Use::kIndices,      Use::kTimes,     Use::kWeights,
                                         Use::kInverseBinds, Use::kMovedNode, Use::kTurnedNode};
   const bool is_attribute = std::find(kNoAttributes.begin(), kNoAttributes.end(), use) == kNoAttributes.end();
-  if (!is_attribute) check_unstrided(object, key, view, "an accessor of indices, times or weights");
+  if (!is_attribute) check_unstrided(object, key, view, "an accessor that is not an attribute of vertices");
   const std::size_t size = accessor.element_size(), stride = view.stride.value_or(size);
   const std::size_t alignment = component_size(accessor.component);
   if (accessor.offset % alignment != 0 || (view.offset + accessor.offset) % alignment != 0)

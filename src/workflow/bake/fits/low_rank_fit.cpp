@@ -18,8 +18,9 @@ namespace {
 
 constexpr std::size_t kPointBlock = 16;  // the number of points that one task handles
 constexpr std::size_t kSampledPoints = 1500;
-// A point (vertices with the same normal) counts in the fit by the factor 1 / length. The length is the 2 % quantile of
-// the lengths of its normals, but at least kShortest, and at least kPartOfLack times the length of its missing vectors.
+// A point (vertices with the same normal) has the weight 1 / length in the fit. The length is the 2 % quantile of the
+// lengths of its normals, but at least kShortest, and at least kPartOfLack times the length of its missing vectors
+// (right normals minus shown normals).
 // Without the two limits, a few points with very short normals would dominate all others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
