@@ -44,7 +44,7 @@ Result<int> run(const MergeArguments& options) {
   if (const Status written = print_to(options.common.output, merged.value().json, options.common.force); !written)
     return written.error();
   if (merged.value().is_within) return kExitDone;
-  say("merge", "the worst error is beyond the --tolerance with which the shards were made", Tone::kError);
+  say("merge", "the result is not within the --tolerance with which the shards were made", Tone::kError);
   return kExitBeyond;
 }
 

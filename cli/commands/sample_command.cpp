@@ -212,8 +212,9 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
     say("sample",
-        formatted("the result will have {:.1f} GB, for {} with {} each; to make it smaller, give fewer moments",
-                  bytes / 1e9, counted(moments, "moment", "moments"), counted(elements, "normal", "normals")),
+        formatted("the result will have {:.1f} GB, for {} with {} each{}", bytes / 1e9,
+                  counted(moments, "moment", "moments"), counted(elements, "normal", "normals"),
+                  moments > 1 ? "; to make it smaller, give fewer moments" : ""),
         Tone::kWarning);
 }
 

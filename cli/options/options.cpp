@@ -263,7 +263,7 @@ Check check_given(std::string message) {
 }
 
 int run_program(const std::vector<Command>& commands, std::span<char*> arguments) {
-  // The name of the command for error messages. It is empty until the command line has been parsed so far.
+  // The name of the command for error messages. It is empty until the command is known.
   std::string name;
   start_ranks([&name](const Error& error) { return report(name, error); });
   return end_ranks(understand_and_run(commands, arguments, name));

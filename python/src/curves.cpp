@@ -224,7 +224,8 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 }
 
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size) {
-  constexpr const char* kWanted = "out must be a C-contiguous array of float32, such as numpy.empty() makes";
+  constexpr const char* kWanted =
+      "out must be a C-contiguous array of float32, such as numpy.empty(shape, numpy.float32)";
   const auto n = static_cast<py::ssize_t>(size);
   if (out.is_none()) {
     if (rows) return py::array_t<float>({static_cast<py::ssize_t>(*rows), n, py::ssize_t{3}});

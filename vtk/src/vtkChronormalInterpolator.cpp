@@ -215,7 +215,7 @@ vtkSmartPointer<vtkDataObject> vtkChronormalInterpolator::Interpolate(const Step
   if (const auto data = all_as<vtkDataSet>(steps)) return this->InterpolateMesh(*data, request);
   vtkErrorMacro(<< request.place << "A " << steps[request.from]->GetClassName() << " and a "
                 << steps[request.from + 1]->GetClassName()
-                << " cannot be interpolated. Give both steps data of the same type.");
+                << " cannot be interpolated. Give all steps the same class of vtkDataSet or of vtkCompositeDataSet.");
   return nullptr;
 }
 

@@ -124,7 +124,9 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
       "a triangle then has no area, and a larger face counts twice in the vertex normal");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
                       "commands that need triangles cut such a face into triangles that do not overlap");
-  std::string meaning = "shading has a seam there, unless such vertices share a normal, as they do without --no-weld";
+  std::string meaning =
+      "shading has a seam there, unless such vertices share a normal; other commands let them share one, unless "
+      "--no-weld is given";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning = "shading has a seam there; " + counted(split, "of them is a hard edge", "of them are hard edges") +
               " in the stored normals too";
