@@ -9,8 +9,8 @@
 ///            ComputePointNormals and ComputeCellNormals say whether normals are also computed for an input
 ///            without normals. Normals are in double if the points are.
 /// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four
-///            steps: SetPathToCatmullRom(). On curves, positions and normals are those of the curve; all other arrays are
-///            interpolated linearly.
+///            steps: SetPathToCatmullRom(). On curves, positions and normals are those of the curve; all other arrays
+///            are interpolated linearly.
 /// Time       Any time is valid: outside the range of the input, the nearer end is used.
 /// Arrays     Ids, ghost flags and texts come from the earlier step, since they are names and not amounts.
 /// Pieces     If a piece is requested, the filter asks its input for one more ghost level, so that the normals along

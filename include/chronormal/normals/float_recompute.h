@@ -10,10 +10,10 @@
 ///     recompute.unit_normals(motion.segment(i), t, result);    // at any t of any of its segments
 ///
 /// Accuracy   1e-4 rad or better on ordinary meshes, without a general bound: a position has an error of 2^-24 of its
-///            distance from the origin, which turns a normal by that error divided by the height of the triangle. Errors
-///            are large for meshes far from the origin or finely divided (they grow with coordinates divided by edges),
-///            needles and slivers, faces that collapse in the segment, and vertices whose faces nearly cancel. Limit
-///            directions are not computed.
+///            distance from the origin, which turns a normal by that error divided by the height of the triangle.
+///            Errors are large for meshes far from the origin or finely divided (they grow with coordinates divided by
+///            edges), needles and slivers, faces that collapse in the segment, and vertices whose faces nearly cancel.
+///            Limit directions are not computed.
 /// Zeros      The result is (0, 0, 0) if |n|^2 is not a normal number of float32: for elements without area or
 ///            without a face, for edges below 1e-10 or above 1e9, and for infinities and NaN among the positions.
 /// Order      The cross products of an element are added from neighbour to neighbour, and polygons as fans from the
@@ -21,8 +21,8 @@
 /// Memory     4 bytes for each corner and 8 or more for each element of groups, for paths around vertices in slices of
 ///            sixteen, each as long as its longest path; 16 bytes for each vertex, for its interpolated position.
 /// Ownership  the topology must outlive the object; groups are only read when it is made.
-/// Threads    unit_normals() uses the scratch of the object, so only one call may run at a time. With one thread it does
-///            not allocate or throw. Results have the same bits on every instruction set, compiler and number of
+/// Threads    unit_normals() uses the scratch of the object, so only one call may run at a time. With one thread it
+///            does not allocate or throw. Results have the same bits on every instruction set, compiler and number of
 ///            threads.
 #ifndef CHRONORMAL_NORMALS_FLOAT_RECOMPUTE_H_
 #define CHRONORMAL_NORMALS_FLOAT_RECOMPUTE_H_

@@ -20,8 +20,8 @@
 ///            vertices that coincide at both ends (in all keyframes; in the base and at full weight of each target)
 ///            share a normal. Hard edges are determined at t = 0.
 /// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a proven
-///            bound. For blend shapes it is within 1e-6 rad, unless blends_in_float32 is set. Weightings other than area add
-///            fit_bound().
+///            bound. For blend shapes it is within 1e-6 rad, unless blends_in_float32 is set. Weightings other than
+///            area add fit_bound().
 /// Degenerate (0, 0, 0) if there is no normal; calls return the number of such results, usually 0. If n(t) is zero only
 ///            at this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer
 ///            end; if t is NaN every normal is (0, 0, 0).
@@ -148,10 +148,10 @@ class MeshNormals {
   /// for a set of another mesh; those of validate() for a set. The first set can also give those of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set);
   /// Sets the weights, chooses the cheapest way to compute normals at these weights, and blends positions if this way
-  /// needs them. The choice is a pure function of the set, the weights and the options. Normals are exact at all
-  /// weights, also at negative weights and above 1. If n(w) is below its own rounding error, the normal is (0, 0, 0).
-  /// With one thread this function does not allocate or throw. Preconditions: targets are set, and there is a weight
-  /// for each.
+  /// needs them. The choice is a pure function of the set, the weights and the options. Unless blends_in_float32 is
+  /// set, normals are exact at all weights, also at negative weights and above 1. If n(w) is below its own rounding
+  /// error, the normal is (0, 0, 0). With one thread this function does not allocate or throw. Preconditions: targets
+  /// are set, and there is a weight for each.
   void set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Write the unit normals at the current weights, and return the number of (0, 0, 0) written. Precondition: result
   /// has size() elements.
