@@ -162,7 +162,8 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
   if (given->data == nullptr && size > 0)
     return Error{ErrorCode::kUsage, "output", "the pointer is NULL; pass a valid pointer"};
   if (given->stride != 0 && given->stride != sizeof(std::uint32_t))
-    return Error{ErrorCode::kUsage, "output.stride", "the stride of packed normals must be 0 or 4 bytes"};
+    return Error{ErrorCode::kUsage, "output.stride",
+                 "the stride must be 0 or 4 bytes, since normals of this format have 4 bytes"};
   if (given->format == CHRONORMAL_OCTAHEDRAL)
     return write(std::span(static_cast<Octahedral*>(given->data), size), range);
   return write(std::span(static_cast<Rgb10A2*>(given->data), size), range);

@@ -30,9 +30,9 @@ void run_cones(Suite& suite, const Size& size);
 /// move every vertex.
 void run_blend(Suite& suite, const Size& size);
 
-/// Measures how fast all crossings of moving points through the surface of a deforming mesh are found.
+/// Measures how long queries about a whole segment take: when faces collapse, and from which side a viewer sees them.
 void run_uses(Suite& suite, const Size& size);
-/// Measures how fast the crossings of points through the surface are found.
+/// Measures how fast all crossings of moving points through the surface of a deforming mesh are found.
 void run_containment(Suite& suite, const Size& size);
 
 /// The angular errors of a scheme in degrees, and its memory: one row of the table of quality against cost.

@@ -298,7 +298,7 @@ Opened open(const py::dict& source, KeepShading shading) {
   if (const py::object motion = source["motion"]; !motion.is_none()) {
     opened.made = &motion.cast<const ReadMotion&>();
     require(!opened.made->motion().segments.empty(), "source",
-            "the mesh does not move, so there is nothing to judge; give a motion");
+            "the mesh does not move, so there is nothing to judge; give a Motion with at least two keyframes");
     opened.kept = motion;
   } else {
     opened.input.emplace(open_files(source, false, shading));

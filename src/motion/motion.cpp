@@ -79,7 +79,7 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   if (!(start < time)) return std::isnan(time) ? time : 0.0;
   if (!(time < end)) return 1.0;
   // If the difference of two times exceeds the range of double, all times are halved first. Halving rounds only
-  // subnormal times, and this rounding is far too small to matter beside such a large difference.
+  // times below 2^-1021, and this rounding is far too small to matter beside such a large difference.
   const double scale = std::isfinite(end - start) ? 1 : 0.5;
   const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
                 whole = Twofold::sum(scale * end, -scale * start);

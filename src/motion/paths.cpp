@@ -1,11 +1,10 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
 // The bound of the angle between normals is in motion/piece_bounds.h. Let s run from 0 to 1 over a piece. On a cubic,
-// an edge differs from its chord by p s (1 - s), where p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2
-// e''(1)) / 6. Here e is the edge on the curves, which is a difference of two cubics, and e'' is its second derivative
-// by s. To see this, note that p s (1
-// - s) and the difference of cubic and chord are cubics that vanish at s = 0 and 1 and have the same second
-// derivatives.
+// an edge differs from its chord by p s (1 - s), where p is linear in s, from -(2 e''(0) + e''(1)) / 6 to
+// -(e''(0) + 2 e''(1)) / 6. Here e is the edge on the curves, which is a difference of two cubics, and e'' is its
+// second derivative by s. To see this, note that p s (1 - s) and the difference of cubic and chord are cubics that
+// vanish at s = 0 and 1 and have the same second derivatives.
 #include "chronormal/motion/paths.h"
 
 #include <algorithm>

@@ -148,10 +148,11 @@ class MeshNormals {
   /// for a set of another mesh; those of validate() for a set. The first set can also give those of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set);
   /// Sets the weights, chooses the cheapest way to compute normals at these weights, and blends positions if this way
-  /// needs them. The choice is a pure function of the set, the weights and the options. Unless blends_in_float32 is
-  /// set, normals are exact at all weights, also at negative weights and above 1. If n(w) is below its own rounding
-  /// error, the normal is (0, 0, 0). With one thread this function does not allocate or throw. Preconditions: targets
-  /// are set, and there is a weight for each.
+  /// needs them. The choice is a pure function of the set, the weights and the options. The accuracy is the same at
+  /// all weights, also at negative weights and above 1. If n(w) is below its own rounding error, the normal is
+  /// (0, 0, 0). Weights that are not finite, or so large that n(w) overflows, give (0, 0, 0) at least for the elements
+  /// that they affect. With one thread this function does not allocate or throw. Preconditions: targets are set, and
+  /// there is a weight for each.
   void set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Write the unit normals at the current weights, and return the number of (0, 0, 0) written. Precondition: result
   /// has size() elements.

@@ -5,8 +5,8 @@
 /// rounding of float32, so that it finds faces that were made to collapse and then rounded. The limit is far below any
 /// length that an author intends. The functions of analysis/signs.h decide exactly whether a normal vanishes.
 ///
-/// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h). Threads
-/// pure: no allocation, no throw.
+/// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
+/// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 

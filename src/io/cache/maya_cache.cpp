@@ -253,7 +253,7 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
     if (const std::optional<std::int64_t> ticks = find_missing(channel, cache))
       return invalid_input(name, "the sample at tick " + std::to_string(*ticks) + " is missing in the cache" +
                                      (described.has_file_per_frame
-                                          ? "; copy its file here, which should be " +
+                                          ? "; copy its file into the folder of the .xml file; its name should be " +
                                                 frame_file(stem, described.extension, *ticks, described.ticks_per_frame)
                                           : ""));
   }

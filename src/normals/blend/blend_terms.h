@@ -79,15 +79,14 @@ class BlendTerms {
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const noexcept;
 
   /// Another target that moves a face which target i also moves, and an upper bound of the number of elements of
-  /// pair(i, other). pair_elements(i) returns these targets in ascending order. The function computes no term, so it
-  /// takes O(targets on each of the faces of target i).
+  /// pair(i, other).
   struct PairCount {
     std::uint32_t other = 0;
     std::uint32_t elements = 0;
     friend bool operator==(const PairCount&, const PairCount&) = default;
   };
-  [[nodiscard]] std::vector<PairCount> pair_elements(std::size_t i) const;
-  /// Returns the pairs of all targets. Each pair is listed only for the earlier target.
+  /// Returns the pairs of all targets. Each pair is listed only for the earlier target, in ascending order of the later
+  /// one. The function computes no term, so for each target it takes O(targets on each of the faces of this target).
   [[nodiscard]] std::vector<std::vector<PairCount>> pair_elements() const;
 
   /// Returns the bytes of memory that this object keeps.

@@ -112,8 +112,8 @@ VectorSeries<kTerms> unit_series(const VectorSeries<3>& n, const Interval& aroun
   return scaled_by<kTerms>(power<kTerms>(squares, -0.5, reciprocal(square_root(squares[0]))), shifted(n, around));
 }
 
-// Returns the angle between two edges, in radians, as a series. The derivative of the angle is (x y' - y x') / (x^2 +
-// y^2) with x = e.f and y = |e x f|.
+// Returns the angle between two edges, in radians, as a series. The derivative of the angle is
+// (x y' - y x') / (x^2 + y^2) with x = e.f and y = |e x f|.
 Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = cross_product<3>(e, f);
   const Series<3> x_here = dot_product<3>(e, f), x = shifted(x_here, around);

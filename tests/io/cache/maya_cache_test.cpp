@@ -173,9 +173,9 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
             "c.xml: the files of the cache are missing; they should be in the same folder, named like cFrame0.mc");
   folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
   folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
-  EXPECT_EQ(
-      error_text(read_maya_cache(folder / "c.xml")),
-      "c.xml: the sample at tick -125 is missing in the cache; copy its file here, which should be cFrame-1Tick125.mc");
+  EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
+            "c.xml: the sample at tick -125 is missing in the cache; copy its file into the folder of the .xml file; "
+            "its name should be cFrame-1Tick125.mc");
   folder.write("cFrame-1Tick125.mc", frame_bytes(false, -125, test::kTurning[0]));
   EXPECT_TRUE(read_maya_cache(folder / "c.xml").ok());
   folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));

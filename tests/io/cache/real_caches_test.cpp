@@ -84,9 +84,9 @@ TEST_F(RealCaches, maya_description_full_of_entities_is_read_and_its_missing_fra
   const fs::path folder = data_ / "caches/sine_xml_parse";
   const Result<PositionCache> cache = read_maya_cache((folder / "cache.xml").string(), {1, 0, "pCubeShape1"});
   ASSERT_FALSE(cache.ok());
-  EXPECT_EQ(
-      cache.error().text(),
-      "cache.xml: the sample at tick 500 is missing in the cache; copy its file here, which should be cacheFrame2.mc");
+  EXPECT_EQ(cache.error().text(),
+            "cache.xml: the sample at tick 500 is missing in the cache; copy its file into the folder of the .xml "
+            "file; its name should be cacheFrame2.mc");
   const Result<FileBytes> xml = FileBytes::open((folder / "cache.xml").string());
   const Result<MayaCacheDescription> description = read_maya_description(xml.value().bytes(), "cache.xml");
   ASSERT_TRUE(description.ok()) << description.error().text();
