@@ -94,9 +94,11 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       {{"--tolerance DEG", &options.limits.degrees,
         "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names. "
         "Without this option there is no limit"},
-       {"--tears N", &options.limits.torn_edges,
+       {"--tears N",
+        &options.limits.torn_edges,
         "exit with code 4 if more than N edges are torn at one moment\nAn edge of a glTF file is torn if errors jump "
-        "by more than 10 degrees across it, which looks like a fold that the surface does not have"},
+        "by more than 10 degrees across it, which looks like a fold that the surface does not have",
+        {.check = check_whole(0)}},
        {"--poses FILE|random", &options.poses,
         "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
         "judges random poses"},

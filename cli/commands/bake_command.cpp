@@ -213,8 +213,6 @@ bool is_lit(const BakeArguments& options, const BakeReport& report) {
 Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input& input, Progress& progress) {
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
-  if (options.input.frames_per_second != 1)
-    return misuse("--fps", "the animations of a glTF file have their own times; leave --fps out");
   if (options.crease_angle != 180 && !options.smooth)
     return misuse("--crease", "--crease is only for primitives without normals, so it needs --smooth; add --smooth");
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
@@ -276,6 +274,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.most_targets) return misuse("--max-targets", kNotOfSequences);
   if (options.animations_only) return misuse("--animations-only", kNotOfSequences);
   if (options.plan) return misuse("--plan", kNotOfSequences);
+  if (options.poses) return misuse("--poses", kNotOfSequences);
   if (options.drivers)
     return misuse("--drivers",
                   "this option is not for sequences, whose animation drives all targets; leave --drivers out");
@@ -438,9 +437,8 @@ Command bake_command() {
       {input_table(options->input, refused),
        {{"--for VIEWER,...", &options->viewers,
          "the viewers that the result is made for, such as three\nViewers and compressors are " + viewer_names() +
-             "; all stands for every viewer. The default is three, babylon, playcanvas and bevy; the result is then no "
-             "worse "
-             "in the others"},
+             "; all stands for every viewer. The default is three, babylon, playcanvas and bevy; where possible, the "
+             "result is no worse in the others"},
         {"--encode HOW", &options->encode,
          "how the new normals are stored (default: smallest)\nsmallest: the smallest errors in a file of at most 2.5 "
          "times "

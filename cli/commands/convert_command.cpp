@@ -1,10 +1,12 @@
 // Defines the command `convert`, which writes a motion in another format.
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "cli/options/command.h"
+#include "cli/options/outputs.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "core/text.h"
@@ -50,6 +52,11 @@ Result<int> run(const ConvertArguments& options) {
   const Result<MotionStream*> motion = input.value().stream();
   if (!motion) return motion.error();
   const std::string& output = options.common.output;
+  std::vector<NamedFile> outputs = {{"OUT", output}};
+  if (const auto names = numbered_names(output, motion.value()->motion().keyframes.size()))
+    for (const std::string& name : names.value())
+      if (name != output) outputs.push_back({"OUT", name});
+  if (const Status distinct = check_distinct(outputs, input_files(options.input)); !distinct) return distinct.error();
   const bool is_float = output.ends_with(".pc2") || output.ends_with(".mdd");
   if (is_float && motion.value()->motion().origin != std::array<double, 3>{})
     say("convert",

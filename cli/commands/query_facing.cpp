@@ -38,7 +38,9 @@ Result<std::vector<double>> parse_numbers(const std::string& option, std::string
 }
 
 Result<View> view_of(const FacingOptions& options) {
-  if (options.direction.has_value() == options.eye.has_value())
+  if (options.direction && options.eye)
+    return misuse("--direction", "there are two cameras; give either --direction X,Y,Z or --eye X,Y,Z");
+  if (!options.direction && !options.eye)
     return misuse("--direction", "the camera is missing; give either --direction X,Y,Z or --eye X,Y,Z");
   const std::string option = options.eye ? "--eye" : "--direction";
   const Result<std::vector<double>> numbers = parse_numbers(option, options.eye ? *options.eye : *options.direction);

@@ -259,7 +259,7 @@ std::string left_over(const GltfBake& bake) {
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
-  return formatted("errors of up to {} remain in places; to correct them in a larger file, add --tolerance {}\n",
+  return formatted("errors of up to {} remain in the animations; to correct them, add --tolerance {}\n",
                    with_degrees(with_digits(worst, 3)), kHarmlessTolerance);
 }
 

@@ -3,15 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/support/bake_fixture.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/shaded_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::bake_cli_test {
@@ -49,6 +54,37 @@ class BakeCli : public testing::Test {
 
 void expect_words(const std::string& text, const std::vector<std::string>& words) {
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << "\nin\n" << text;
+}
+
+// Bakes random sheets, of which some get worse in viewers that are not named. The report must name exactly these
+// viewers.
+TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
+  constexpr std::uint64_t kFirstSeed = 1128;
+  std::cout << "  from seed " << kFirstSeed << "\n";
+  std::size_t named = 0;
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 8; ++seed) {
+    test::GltfBuilder sheet = test::random_sheet(seed, 4, 2, 0.3).file();
+    sheet.add_track(sheet.add_animation("moves"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+    folder_.write("sheet.glb", sheet.glb());
+    const ProcessResult result = run("sheet.glb -o sheet.baked.glb --force");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    std::string worse;
+    const std::regex row("(Godot 4|Filament) +(\\S+) +(\\S+) .*");
+    for (std::istringstream lines(result.out); lines;) {
+      std::string line;
+      std::getline(lines, line);
+      std::smatch cells;
+      if (!std::regex_match(line, cells, row) || std::stod(cells[3].str()) <= std::stod(cells[2].str()) + 0.5) continue;
+      worse.append(worse.empty() ? "" : ", ").append(cells[1]);
+    }
+    const std::string words = "the file is now worse in ";
+    if (worse.empty())
+      EXPECT_EQ(result.out.find(words), std::string::npos) << result.out;
+    else
+      expect_words(result.out, {words + worse + "; if it is shown there, bake the original file with --for "});
+    if (!worse.empty()) ++named;
+  }
+  EXPECT_GT(named, 0U);
 }
 
 TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {

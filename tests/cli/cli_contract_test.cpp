@@ -694,6 +694,36 @@ TEST_F(Cli, convert_writes_keyframes_that_compare_reads_back) {
   EXPECT_EQ(direct["schemes"], Json::parse(run("compare 'twist_*.ply' --json --no-times").out)["schemes"]);
 }
 
+TEST_F(Cli, convert_never_replaces_its_input) {
+  for (int k = 0; k < 3; ++k)
+    write("f_" + std::to_string(k) + ".obj", "v 0 0 0\nv 1 0 0\nv 0 1 " + std::to_string(k) + "\nf 1 2 3\n");
+  ASSERT_EQ(run("convert f_0.obj f_1.obj f_2.obj -o all.npz").exit_code, 0);
+  for (const char* arguments : {"f_0.obj f_1.obj f_2.obj --from 1 -o f_%d.obj", ". --from 1 -o f_%d.obj",
+                                "all.npz --from 1 -o ./all.npz", "--base f_0.obj f_1.obj -o f_0.obj"}) {
+    const std::string mesh = read("f_1.obj"), array = read("all.npz");
+    const ProcessResult result = run("convert --force " + std::string(arguments));
+    EXPECT_EQ(result.exit_code, 2) << arguments << result.err;
+    EXPECT_NE(result.err.find("would overwrite the file of INPUT"), std::string::npos) << result.err;
+    EXPECT_EQ(read("f_1.obj"), mesh);
+    EXPECT_EQ(read("all.npz"), array);
+  }
+  EXPECT_EQ(run("convert all.npz --from 1 -o part.npz").exit_code, 0);
+}
+
+TEST_F(Cli, options_that_an_input_has_no_use_for_are_refused) {
+  write_two_frames();
+  ASSERT_EQ(run("convert --base a.obj b.obj -o moving.glb").exit_code, 0);
+  for (const char* arguments :
+       {"audit moving.glb --fps 24", "inspect moving.glb --fps 24", "bake moving.glb --fps 24 -o o.glb",
+        "sample a.obj b.obj --world --times 0 -o n.npy", "compare a.obj b.obj --world",
+        "compare --sample twist --world", "bake a.obj b.obj --poses random -o o.glb", "audit moving.glb --tears -1",
+        "audit moving.glb --tears 99999999999999999999", "query facing a.obj b.obj --direction 0,0,1 --eye 1,2,3"}) {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+  }
+}
+
 TEST_F(Cli, caches_and_arrays_are_motions_too) {
   ASSERT_EQ(run("convert --sample cloth -o cloth_%d.obj").exit_code, 0);
   const Json direct = Json::parse(run("compare --sample cloth --samples 5 --json --no-times").out);

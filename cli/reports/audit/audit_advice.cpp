@@ -111,8 +111,7 @@ std::string outcome(const Audited& input) {
       wrong.begin(), wrong.end(), [&](const AuditSubject* subject) { return is_driven(input, *subject); }));
   const bool by_area = std::all_of(wrong.begin(), wrong.end(),
                                    [](const AuditSubject* subject) { return subject->weighting == Weighting::kArea; });
-  std::string text = formatted("corrects these normals to within {:g} degrees where it can, and makes no viewer worse",
-                               kHarmlessTolerance);
+  std::string text = formatted("corrects these normals to within {:g} degrees where it can", kHarmlessTolerance);
   if (driven == wrong.size() && by_area && input.audit.error.unlit == 0)
     text += "; for viewers that add up targets as glTF says, --encode exact comes within about 0.01 degrees";
   return text;

@@ -37,6 +37,9 @@ Error misuse(std::string place, std::string message) {
   return Error{ErrorCode::kUsage, std::move(place), std::move(message)};
 }
 
+constexpr const char* kNoNodes =
+    "only the nodes of a glTF file place meshes, and the input is not one; leave --world out";
+
 Error not_animated(const std::string& input) {
   return misuse(input, "--animation is only for glTF files, and this is not one; leave --animation out");
 }
@@ -479,6 +482,8 @@ Status check_input(const InputOptions& options) {
   if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
     return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
   if (const Result<Path> path = make_path(options.path); !path) return misuse("--path", path.error().message);
+  if (options.world && (!options.base.empty() || !options.samples.empty() || options.files.size() > 1))
+    return misuse("--world", kNoNodes);
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
     return misuse("--animation", "--animation is only for glTF files; name one as the input");
   if (!options.base.empty()) {
@@ -682,7 +687,12 @@ Result<Input> open_input(const InputOptions& asked) {
 
   Result<Opened> opened = open_whole(options.files.front(), options);
   if (!opened) return opened.error();
-  if (!opened.value().document) return keep(name_of_files(options.files), std::move(opened.value().read));
+  if (!opened.value().document) {
+    if (options.world) return misuse("--world", kNoNodes);
+    return keep(name_of_files(options.files), std::move(opened.value().read));
+  }
+  if (options.frames_per_second != 1)
+    return misuse("--fps", "the animations of a glTF file have their own times; leave --fps out");
   state->name = name_of_files(options.files);
   state->opened = std::move(opened).value();
   state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);

@@ -48,7 +48,8 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   }
   if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (files.empty())
-    return invalid_input(folder, "the folder has no mesh files (" + extensions_of({Holds::kMesh}, " or ") + ")");
+    return invalid_input(folder, "the folder has no mesh files (" + extensions_of({Holds::kMesh}, " or ") +
+                                     ") to be keyframes; name a file of it, or a folder with such files");
   return files;
 }
 

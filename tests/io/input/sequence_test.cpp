@@ -166,7 +166,10 @@ TEST(FindFrames, what_is_not_there_is_an_error_with_its_name) {
   EXPECT_EQ(error_of(find_frames(test::files(Names{"-", "-"}))).code, ErrorCode::kUsage);
   const Error empty = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(empty.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(empty.text(), folder.path() + ": the folder has no mesh files (.obj or .ply)");
+  EXPECT_EQ(empty.text(),
+            folder.path() +
+                ": the folder has no mesh files (.obj or .ply) to be keyframes; name a file of it, or a folder "
+                "with such files");
 }
 
 TEST(FindFrames, folder_that_cannot_be_listed_is_an_error_with_its_name) {

@@ -298,8 +298,10 @@ class Chooser {
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
     if (is_stored && !was_stored) return false;
-    const auto rank = [](const Judged& of) {
-      return std::tuple(of.is_affordable, of.better, of.unharmed, of.is_bearable, of.choice.within);
+    // A tolerance that the caller gave counts more than viewers that the caller did not name.
+    const auto rank = [is_asked = options_.tolerance.has_value()](const Judged& of) {
+      return std::tuple(of.is_affordable, of.better, is_asked && of.choice.within, of.unharmed, of.is_bearable,
+                        of.choice.within);
     };
     if (rank(judged) != rank(than)) return rank(judged) > rank(than);
     if (judged.choice.within && prefers_bytes_) {

@@ -10,7 +10,8 @@
 ///                           plays, in each target alone, and in poses that a program sets.
 ///
 /// The criteria for a candidate are, in this order: it is within the limits; it is better in most of the named viewers;
-/// it is no worse in most of the other viewers; it is within the tolerance; its size is in proportion to the file.
+/// it is no worse in most of the other viewers; it is within the tolerance; its size is in proportion to the file. A
+/// tolerance that the caller gave precedes the other viewers.
 /// Among candidates that are equal by all criteria and within the tolerance, the smallest is chosen, unless another one
 /// has a much smaller error in the viewers that are not named. If such candidates are beyond the tolerance, the
 /// candidate with the smallest error is chosen.
