@@ -56,33 +56,39 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << "\nin\n" << text;
 }
 
-// Bakes random sheets, of which some get worse in viewers that are not named. The report must name exactly these
-// viewers.
+// Bakes random sheets for viewers that add up deltas. Some get worse in viewers that are not named, most of all with a
+// small tolerance. The report must name exactly these viewers.
 TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
   constexpr std::uint64_t kFirstSeed = 1128;
   std::cout << "  from seed " << kFirstSeed << "\n";
   std::size_t named = 0;
-  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 8; ++seed) {
-    test::GltfBuilder sheet = test::random_sheet(seed, 4, 2, 0.3).file();
-    sheet.add_track(sheet.add_animation("moves"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 6; ++seed) {
+    test::GltfBuilder sheet = test::random_sheet(seed, 4, 1 + seed % 3, 0).file();
     folder_.write("sheet.glb", sheet.glb());
-    const ProcessResult result = run("sheet.glb -o sheet.baked.glb --force");
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    std::string worse;
-    const std::regex row("(Godot 4|Filament) +(\\S+) +(\\S+) .*");
-    for (std::istringstream lines(result.out); lines;) {
-      std::string line;
-      std::getline(lines, line);
-      std::smatch cells;
-      if (!std::regex_match(line, cells, row) || std::stod(cells[3].str()) <= std::stod(cells[2].str()) + 0.5) continue;
-      worse.append(worse.empty() ? "" : ", ").append(cells[1]);
+    // The first bake gives each target right normals at weight 1. The second bake makes a file of these normals again.
+    ASSERT_EQ(run("sheet.glb -o right.glb --encode harmless --force").exit_code, 0);
+    for (const char* input : {"sheet.glb", "right.glb", "moving.glb"}) {
+      for (const char* tolerance : {"", " --tolerance 0.01"}) {
+        const ProcessResult result = run(std::string(input) + " -o baked.glb --force" + tolerance);
+        ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 4) << result.err;
+        std::string worse;
+        const std::regex row("(Godot 4|Filament) +(\\S+) +(\\S+) .*");
+        for (std::istringstream lines(result.out); lines;) {
+          std::string line;
+          std::getline(lines, line);
+          std::smatch cells;
+          if (!std::regex_match(line, cells, row)) continue;
+          if (std::stod(cells[3].str()) <= std::stod(cells[2].str()) + 0.5) continue;
+          worse.append(worse.empty() ? "" : ", ").append(cells[1]);
+        }
+        const std::string words = "the file is now worse in ";
+        if (worse.empty())
+          EXPECT_EQ(result.out.find(words), std::string::npos) << result.out;
+        else
+          expect_words(result.out, {words + worse + "; if it is shown there, bake the original file with --for "});
+        if (!worse.empty()) ++named;
+      }
     }
-    const std::string words = "the file is now worse in ";
-    if (worse.empty())
-      EXPECT_EQ(result.out.find(words), std::string::npos) << result.out;
-    else
-      expect_words(result.out, {words + worse + "; if it is shown there, bake the original file with --for "});
-    if (!worse.empty()) ++named;
   }
   EXPECT_GT(named, 0U);
 }
