@@ -114,10 +114,12 @@ Result<BakeOptions> understand(const BakeArguments& options) {
 
 // Returns true if the user gave a limit, and the bake of a mesh exceeds it or leaves tangents that do not fit the new
 // normals.
-bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
+bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake,
+               const GltfDocument& document) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
-  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
-    return mesh.left_tangents > 0 ||
+  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&](const BakedMesh& mesh) {
+    const std::size_t targets = document.meshes()[mesh.mesh].target_count;
+    return mesh.left_tangents > 0 || (options.most_targets && targets > *options.most_targets) ||
            std::any_of(mesh.candidates.begin(), mesh.candidates.end(), [&](const auto& choice) {
              return choice.chosen && (!choice.within || is_beyond_by_rounding(choice, how));
            });
@@ -223,7 +225,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   progress.clear();
   if (!baked) return baked.error();
   give_back_free_memory();  // returns the freed memory of the bake to the system
-  const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
+  const int code = is_beyond(options, how, baked.value(), document) ? kExitBeyond : kExitDone;
   BakeReport told{input.name(), output, options.drivers, std::nullopt, input.notes()};
   if (options.plan) {
     warn(baked.value().warnings);

@@ -67,7 +67,11 @@ Result<int> run(const ConvertArguments& options) {
                                       input.value().expansion(), !options.no_weld);
   if (!written) return written.error();
   const Motion& of_input = motion.value()->motion();
-  say_written(options.common, formatted("{} of {}", counted(of_input.keyframes.size(), "keyframe", "keyframes"),
+  const std::size_t keyframes = of_input.keyframes.size();
+  const bool has_targets = of_input.kind == MotionKind::kTargets && keyframes > 1;
+  say_written(options.common, formatted("{} of {}",
+                                        has_targets ? "a base and " + counted(keyframes - 1, "target", "targets")
+                                                    : counted(keyframes, "keyframe", "keyframes"),
                                         counted(of_input.topology.vertex_count(), "vertex", "vertices")));
   return kExitDone;
 }

@@ -93,6 +93,19 @@ TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
   EXPECT_GT(named, 0U);
 }
 
+TEST_F(BakeCli, targets_of_the_file_beyond_the_limit_are_kept_and_end_with_code_4) {
+  for (const char* options :
+       {"moving.glb -o out.glb --max-targets 1", "moving.glb -o out.glb --force --max-targets 1 --tolerance 90"}) {
+    const ProcessResult result = run(options);
+    EXPECT_EQ(result.exit_code, 4) << options;
+    EXPECT_NE(result.err.find("has 2 targets of its own, more than 1, and bake removes none; raise --max-targets"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(result.err.find("could not bring all errors"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(run("moving.glb -o out.glb --force --max-targets 2 --tolerance 90").exit_code, 0);
+}
+
 TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   const ProcessResult result = run("moving.glb -o out.glb");
   EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -39,9 +39,11 @@ std::string element_place(const std::string& place, std::initializer_list<std::s
 Status check_positions(const Array& array, const std::string& place, const std::string& what) {
   if (array.kind == Kind::kFloat && array.shape.size() == 3 && array.shape[2] == 3 && array.element_count() > 0)
     return Success{};
-  return invalid_input(
-      place,
-      what + " must be an array of shape (keyframes, vertices, 3) of float32 or float64; this one is " + array.text());
+  return invalid_input(place,
+                       what +
+                           " must be an array of float32 or float64 with the shape (keyframes, vertices, 3), and "
+                           "must not be empty; this one is " +
+                           array.text());
 }
 
 // Returns the layout of an array of positions in C order. `begin` is the offset of the array in its file.

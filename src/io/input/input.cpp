@@ -501,6 +501,7 @@ Status check_input(const InputOptions& options) {
   if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
     return misuse("", "there is more than one input; give either files or one --sample");
   for (const std::string& file : options.files) {
+    if (file.empty()) return misuse("", "the name of a file is empty; give the name of a file or folder");
     const Format* const format = find_format(file);
     if (format != nullptr && format->holds == Holds::kTarget)
       return misuse(file, "a target needs the mesh that it changes; name that mesh with --base FILE");

@@ -143,14 +143,14 @@ TEST(ReadNpz, errors_name_array_and_element) {
   elements[13] = -1e39;
   EXPECT_EQ(error_of(archive(npy(npy_header("<f8", "(2, 3, 3)"), raw(elements)), kFaces)),
             "walk.npz, positions[1, 1, 1]: the coordinate is too large for float32; scale the mesh down");
-  EXPECT_EQ(
-      error_of(archive(npy(npy_header("<i4", "(2, 3, 3)"), std::string(72, '\0')), kFaces)),
-      "walk.npz, positions: positions must be an array of shape (keyframes, vertices, 3) of float32 or float64; this "
-      "one is (2, 3, 3) of '<i4'");
-  EXPECT_EQ(
-      error_of(archive(npy(npy_header("<f4", "(0, 3, 3)"), ""), kFaces)),
-      "walk.npz, positions: positions must be an array of shape (keyframes, vertices, 3) of float32 or float64; this "
-      "one is (0, 3, 3) of '<f4'");
+  EXPECT_EQ(error_of(archive(npy(npy_header("<i4", "(2, 3, 3)"), std::string(72, '\0')), kFaces)),
+            "walk.npz, positions: positions must be an array of float32 or float64 with the shape (keyframes, "
+            "vertices, 3), and must not be empty; this "
+            "one is (2, 3, 3) of '<i4'");
+  EXPECT_EQ(error_of(archive(npy(npy_header("<f4", "(0, 3, 3)"), ""), kFaces)),
+            "walk.npz, positions: positions must be an array of float32 or float64 with the shape (keyframes, "
+            "vertices, 3), and must not be empty; this "
+            "one is (0, 3, 3) of '<f4'");
   for (const auto& [type, data] : {std::pair{"<i4"s, raw<std::int32_t>({0, 1, 3})},
                                    {"<i8"s, raw<std::int64_t>({0, 1, -1})},
                                    {"<u8"s, raw<std::uint64_t>({0, 1, ~std::uint64_t{0}})}})

@@ -102,6 +102,12 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
          "the tangents of " + counted(baked.left_tangents, "target", "targets") +
              " no longer fit the new normals, because --max-bytes leaves no room for new tangents; allow more bytes"});
   }
+  if (options.most_targets && mesh.target_count > *options.most_targets) {
+    warnings.push_back({label_of(mesh, baked), "the mesh has " + counted(mesh.target_count, "target", "targets") +
+                                                   " of its own, more than " + std::to_string(*options.most_targets) +
+                                                   ", and bake removes none; raise --max-targets"});
+    return;
+  }
   const auto chosen =
       std::find_if(baked.candidates.begin(), baked.candidates.end(), [](const auto& c) { return c.chosen; });
   if (chosen == baked.candidates.end()) return;
@@ -210,10 +216,10 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   // Warns of viewers with few attributes. Each target morphs two attributes. The viewers that options can name support
   // more attributes, but other viewers may support only kMorphedAttributes.
-  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
+  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty() && !options.most_targets) {
     warn(std::to_string(targets) +
          " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "
-         "--max-targets");
+         "--max-targets with the number that your viewer shows");
   }
   if (shading.split_by_crease > 0) {
     warn(counted(shading.split_by_crease, "vertex lies", "vertices lie") +
