@@ -104,7 +104,7 @@ def _baked(path: Path) -> Path:
 
 def frames_of(scene: bpy.types.Scene) -> list[int]:
     """Returns the frames of the timeline and the current frame. If the timeline has more than MOST_FRAMES frames, only
-    every second, third or later frame is returned, beside the last frame and the current one."""
+    every second, third or so of its frames is returned, and also the last frame and the current one."""
     step = max(1, -(-(scene.frame_end - scene.frame_start + 1) // MOST_FRAMES))
     frames = set(range(scene.frame_start, scene.frame_end + 1, step)) | {scene.frame_end, scene.frame_current}
     return sorted(frames)

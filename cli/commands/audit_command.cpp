@@ -107,8 +107,8 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
         "judge each target alone from weight LO to HI\nThe default is 0:1",
         {.rare = true}},
        {"--errors FILE", &options.errors,
-        "write the error of every vertex at every sample, in degrees\nFILE is .npz, for programs, or .ply, for MeshLab "
-        "and Blender, with the largest error of each vertex as its quality"},
+        "write the error of every vertex at every sample, in degrees\nA FILE in .npz, for programs, has all errors. A "
+        "FILE in .ply, for MeshLab and Blender, has the largest error of each vertex, as the property quality"},
        {"--no-weld",
         &options.no_weld,
         "do not merge vertices that are at the same point at all times",

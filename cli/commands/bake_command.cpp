@@ -473,8 +473,8 @@ Command bake_command() {
          {.check = check_whole(0)}},
         {"--max-targets N",
          &options->most_targets,
-         "write at most N morph targets for each mesh\nCorrection targets count, too. The default is what the "
-         "viewers can show. Only with --encode smallest",
+         "write at most N morph targets for each mesh\nCorrection targets count, too. The default is the "
+         "number that the viewers can show. Only with --encode smallest",
          {.check = check_whole(0)}},
         {"--animations-only", &options->animations_only,
          "correct only the animations, not single sliders\nNormals are fitted to the animations of the file. "

@@ -161,7 +161,7 @@ std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& repor
   return rows;
 }
 
-// Formats a number of torn edges: "1,234", or "0.7" if there are few.
+// Formats an average number of torn edges in a pose: "1,234", or "0.7" if there are few.
 std::string torn(double edges) {
   if (edges < 10 && edges > 0) return formatted("{:.1g}", std::max(edges, 0.1));
   return grouped(static_cast<std::size_t>(std::lround(edges)));
@@ -472,8 +472,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
                       four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
     if (bake.cut)
-      text += formatted("normals are at most {} degrees from those of the curves, except where faces almost vanish\n",
-                        four_decimals(bake.largest_error + bake.cut->path.tolerance));
+      text += formatted(
+          "normals are at most {} degrees from the normals on the curved paths, except where faces almost vanish\n",
+          four_decimals(bake.largest_error + bake.cut->path.tolerance));
   } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0) {
     bool are_all_known = bake.without_normals == 0;
     if (report.audit) {

@@ -357,7 +357,8 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
     certify    True: bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme whose error never exceeds the tolerance
     face       one face, in segment 0, or (face, segment): return the dict of `--face`, with the normals that each scheme makes
-               for this face; of the options above, only schemes and samples can be combined with it
+               for this face; of the options of this function, only schemes and samples can be
+               combined with it
     source     as for read(), or a Motion; sample, base, fps, animation, world, path, loop, strict: as for read()
     """
     if access not in ("random", "sequential"):

@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tells whether a text contains NaN or infinity as a number. Sentences that mention NaN do not count.
-bool has_no_number(const std::string& text) {
+// Returns true if a text has NaN or infinity in place of a number. Sentences that mention NaN do not count.
+bool has_nan_or_infinity(const std::string& text) {
   static const std::regex kSentence("zero, infinite or NaN|NaN or infinite");
   static const std::regex kWord("(^|[^a-z])-?(nan|inf)([^a-z]|$)", std::regex::icase);
   return std::regex_search(std::regex_replace(text, kSentence, ""), kWord);
@@ -95,8 +95,8 @@ TEST(Numbers, no_command_prints_nan_or_infinity) {
   std::size_t done = 0;
   for (const std::string& command : commands) {
     const ProcessResult result = run_shell(std::string(kProgram) + " " + command, folder.path());
-    EXPECT_FALSE(has_no_number(result.out)) << command << "\n" << result.out;
-    EXPECT_FALSE(has_no_number(result.err)) << command << "\n" << result.err;
+    EXPECT_FALSE(has_nan_or_infinity(result.out)) << command << "\n" << result.out;
+    EXPECT_FALSE(has_nan_or_infinity(result.err)) << command << "\n" << result.err;
     EXPECT_LE(result.exit_code, 4) << command << "\n" << result.err;
     done += result.exit_code == 0 || result.exit_code == 4 ? 1 : 0;
   }
@@ -105,9 +105,9 @@ TEST(Numbers, no_command_prints_nan_or_infinity) {
 
 TEST(Numbers, the_measure_finds_words_that_are_no_numbers) {
   for (const char* const text : {"nan", "mean -nan, rms", "1,-nan,2", "inf\n", "NaN", "up to -inf degrees"})
-    EXPECT_TRUE(has_no_number(text)) << text;
+    EXPECT_TRUE(has_nan_or_infinity(text)) << text;
   for (const char* const text : {"a banana", "information", "finite", "nano 3", "1e-38"})
-    EXPECT_FALSE(has_no_number(text)) << text;
+    EXPECT_FALSE(has_nan_or_infinity(text)) << text;
 }
 
 // fmt::format would print "nan", so the program may call fmt::format only in cli/terminal/format.h.

@@ -1,7 +1,7 @@
 /// Finds the corners of faces that share a normal, and computes the control normals of such groups of corners.
 ///
-/// The normal of a vertex is a sum over the faces around it; the normal of a corner is a sum over the faces around its
-/// vertex that smooth edges connect. Both divide the corners into *elements*, each with one normal. Two triangles 0 1 2
+/// The normal of a vertex is a sum over the faces around it; the normal of a corner is a sum over those faces around its
+/// vertex that smooth edges connect to its own face. Both divide the corners into *elements*, each with one normal. Two triangles 0 1 2
 /// and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
 ///     corner    0  1  2  3  4  5            of face 0, and of face 1
@@ -20,7 +20,7 @@
 ///     point_of_vertex   0  1  2  1  3
 ///
 /// Two sides  If all faces at a point are back to back, the corners of the two sides do not share a normal, since the
-///            two normals are opposite. (A vertex with corners of both sides and one normal keeps a sum of zero.)
+///            two normals are opposite. (If one normal is for both sides, because they share a vertex, the sum is zero.)
 /// Sums       The length of a face normal is twice the area of the face, so the area-weighted normal of an element is
 ///            the plain sum of the n(t) of its faces: a sum of quadratics, hence a quadratic, exact at every t. The
 ///            control normals are added once; afterwards vertices and corners are elements like faces, for NormalCurves
@@ -32,7 +32,7 @@
 ///            bits.)
 /// Polygons   A face with two corners at one point is added twice.
 /// Degenerate An element without corners, or whose faces all have no area, has zero control normals; its unit normal is
-///            (0, 0, 0), which NormalCurves counts. A face without area adds nothing, a duplicate face is added twice,
+///            (0, 0, 0), and NormalCurves counts such elements. A face without area adds nothing, a duplicate face is added twice,
 ///            and two faces of opposite orientation cancel.
 /// Threads    const functions may run at the same time.
 #ifndef CHRONORMAL_NORMALS_NORMAL_GROUPS_H_

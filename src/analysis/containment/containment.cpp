@@ -321,7 +321,7 @@ Result<Containment> Containment::make(const Topology& topology, const Points& po
     if (faults.boundary > 0 && faults.unbalanced > 0) message += ", and ";
     if (faults.unbalanced > 0)
       message += counted(faults.unbalanced, "edge lies", "edges lie") +
-                 " between faces whose corners run in opposite orders (flip such faces)";
+                 " between two faces whose corners run in opposite orders (flip one of the two)";
     return invalid_input("face " + std::to_string(faults.first_face), std::move(message));
   }
   const Triangles triangles = triangles_of(topology, points, positions);

@@ -19,8 +19,8 @@ inline constexpr double kSmallestTime = 0x1p-200;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// Returns a time moved into [0, 1]. The time may be a quotient that is not a double. A time closer than kSmallestTime
-/// to an end becomes that end.
+/// Returns a time clamped to [0, 1]. The time may be a quotient that no double can represent. A time closer than
+/// kSmallestTime to an end becomes that end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

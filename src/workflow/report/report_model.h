@@ -62,8 +62,8 @@ struct ModelOffset {
 /// The data for the true normals of a glTF mesh, if the true normals are more than sums over its triangles
 /// (truth/author_truth.h).
 struct ModelTruth {
-  /// The changes of the author's offsets that a target makes at weight 1. Each change has an index in the list of
-  /// offsets, and a vector in the plane of the offset.
+  /// The changes of the author's offsets that a target makes at weight 1. Each change has the index of an offset in the
+  /// list of offsets, and two coordinates in the frame of this offset (truth/offset_frame.h).
   struct Changes {
     std::vector<std::uint32_t> offsets;
     std::vector<float> values;  ///< (n, 2), the changes of these offsets

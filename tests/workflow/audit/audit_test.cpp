@@ -311,7 +311,8 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
         std::vector<double> w(2);
         for (std::size_t k = 0; k < 2; ++k) {
           if (a == 0) w[k] = (1 - t) * weights[s][k] + t * weights[s + 1][k];
-          if (a == 1) w[k] = weights[s == 1 && i == 3 ? 2 : s][k];  // the last key jumps, and its pose stays
+          // Weights jump at keys. Only the last sample of the track has the weights of the last key.
+          if (a == 1) w[k] = weights[s == 1 && i == 3 ? 2 : s][k];
           if (a == 2) w[k] = hermite(t, weights[s][k], out[s][k], in[s][k], weights[s + 1][k], td);
         }
         for (std::size_t v = 0; v < mesh.vertices(); ++v) expected.push_back(mesh.error(v, w));
@@ -360,7 +361,8 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
         for (std::size_t k = 0; k < kTargets; ++k) {
           const double from = at_key(s, 1, k), to = at_key(s + 1, 1, k);
           if (a == 0) w[k] = (1 - t) * from + t * to;
-          if (a == 1) w[k] = s + 2 == times.size() && i == 5 ? to : from;  // the last key jumps, and its pose stays
+          // Weights jump at keys. Only the last sample of the track has the weights of the last key.
+          if (a == 1) w[k] = s + 2 == times.size() && i == 5 ? to : from;
           if (a == 2) w[k] = hermite(t, from, at_key(s, 2, k), at_key(s + 1, 0, k), to, td);
         }
         for (std::size_t v = 0; v < mesh.vertices(); ++v) expected.push_back(mesh.error(v, w));

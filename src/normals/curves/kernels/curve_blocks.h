@@ -95,7 +95,7 @@ struct CurveWeights {
   [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 
-/// A bound, at every t, of the sum of the absolute errors of the int16 weights, divided by the sum of the weights.
+/// An upper bound, for every t, of the quotient of two sums: the absolute errors of the int16 weights, and the weights.
 inline constexpr double kWeightError = 1.5 / 32767;
 
 }  // namespace chronormal::inline internal

@@ -57,7 +57,8 @@ HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float
   for (std::size_t i = 0; i < kLanes && first + i < result.count; ++i) result.set(first + i, {x[i], y[i], z[i]});
 }
 
-// Calls body with the layout of a result, as a constant of the compiler.
+// Calls body with the layout of a result as a constant at compile time. If `stream` is true, the layout of packed
+// results that are aligned is kStreamed.
 template <class Body>
 HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
   if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());

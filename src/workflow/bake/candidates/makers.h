@@ -75,7 +75,8 @@ inline constexpr double kPartOfTracks = 0.2;
 /// (FittedLines).
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
-// Makers of correction targets whose weights are products of own weights (products.cpp).
+// Makers of candidates with correction targets whose weights are products of the weights of the mesh's own targets
+// (products.cpp).
 
 /// Returns deltas of the mesh's own targets that make normals right at weight 1 of each target. The deltas of a target
 /// are for the vertices of all elements that the target moves.
