@@ -171,7 +171,7 @@ TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) 
     const ProcessResult result =
         run(std::string("bake 'w*.obj' --encode keys --no-audit --force -o out.glb --path catmull-rom") + options);
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_NE(result.out.find("from those of the curves"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("from the normals on the curved paths"), std::string::npos) << result.out;
     const test::ShownGlb shown(read("out.glb"));
     ASSERT_EQ(shown.vertices(), kSide * kSide);
     long double worst = 0;

@@ -404,12 +404,14 @@ TEST(Containment, a_mesh_that_is_not_closed_is_refused_with_its_edges_counted) {
   EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3}),
             "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only (fill "
             "such holes)");
-  EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 2, 3}),
-            "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between faces whose corners "
-            "run in opposite orders (flip one of the two)");
-  EXPECT_EQ(refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 2, 0, 3}),
-            "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between faces whose corners "
-            "run in opposite orders (flip one of the two)");
+  EXPECT_EQ(
+      refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 2, 3}),
+      "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between two faces whose corners "
+      "run in opposite orders (flip one of the two)");
+  EXPECT_EQ(
+      refusal({0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 2, 0, 3}),
+      "face 0: the mesh is not closed, so points cannot be inside it; 3 edges lie between two faces whose corners "
+      "run in opposite orders (flip one of the two)");
   EXPECT_EQ(refusal({0, 1, 2, 1, 0, 3, 0, 1, 3}).find("2 edges have a face on one side only (fill such holes)"),
             std::string("face 0: the mesh is not closed, so points cannot be inside it; ").size());
 }
