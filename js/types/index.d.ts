@@ -81,8 +81,8 @@ export interface AuditOptions extends MotionOptions {
 
 export interface BakeOptions extends ReadOptions {
   /**
-   * The viewers that the result is made for. Default: all viewers that add up deltas; no other viewer gets
-   * worse.
+   * The viewers that the result is made for. Default: all viewers that add up deltas; other viewers get no
+   * worse if possible.
    */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
