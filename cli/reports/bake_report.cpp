@@ -388,9 +388,10 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
              "nothing was changed, since this file was baked before. For smaller errors, bake the ORIGINAL file\n";
     }
     if (bake.meshes.empty()) return text + "nothing was changed, since no morph target moves a face\n";
-    return text + (are_all_within(bake)
-                       ? "nothing was changed, since all normals are within the tolerance\n"
-                       : "nothing was changed, since bake found nothing better for the named viewers\n");
+    return text + (are_all_within(bake) ? "nothing was changed, since all normals are within the tolerance\n"
+                                        : "nothing was changed, since bake found nothing better for the named viewers "
+                                          "that harms no other viewer "
+                                          "more; to correct the file for one viewer, name it with --for\n");
   }
   text += verdict(bake, report);
   Table table;

@@ -251,6 +251,7 @@ class Chooser {
   void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
     BakedCandidate& choice = judged.choice;
     choice.viewers.resize(viewers_.size());
+    double least_gain = std::numeric_limits<double>::infinity(), most_harm = 0;  // changes of mean errors, in degrees
     for (std::size_t v = 0; v < viewers_.size(); ++v) {
       ViewerChange& change = choice.viewers[v];
       const bool is_named = v < options_.viewers.size();
@@ -269,6 +270,10 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
+      if (is_named)
+        least_gain = std::fmin(least_gain, then.mean - now.mean);
+      else
+        most_harm = std::fmax(most_harm, now.mean - then.mean);
       // If the caller has requested an encoding, a candidate is better than the deltas of the file under two
       // conditions. Its mean error must be smaller, in the poses of the file or in all poses. In addition, it must not
       // tear more edges, or none of its errors may have grown.
@@ -289,6 +294,9 @@ class Chooser {
     }
     judged.mean = choice.played.mean;
     choice.within = judged.is_affordable && choice.played.worst <= tolerance_;
+    // Named viewers must not gain less than another viewer loses, unless the caller asked for this candidate.
+    const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest || (options_.tolerance && choice.within);
+    if (!is_asked && most_harm > tolerance_ && most_harm > least_gain) judged.better = 0;
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {

@@ -11,7 +11,8 @@
 ///
 /// The criteria for a candidate are, in this order: it is within the limits; it is better in most of the named viewers;
 /// it is no worse in most of the other viewers; it is within the tolerance; its size is in proportion to the file. A
-/// tolerance that the caller gave precedes the other viewers.
+/// tolerance that the caller gave precedes the other viewers. A candidate is not chosen if the average error falls by
+/// less in the named viewers than it grows in another viewer, unless the candidate keeps a tolerance that was given.
 /// Among candidates that are equal by all criteria and within the tolerance, the smallest is chosen, unless another one
 /// has a much smaller error in the viewers that are not named. If such candidates are beyond the tolerance, the
 /// candidate with the smallest error is chosen.
