@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -111,6 +112,14 @@ TEST_F(BakeCli, targets_of_the_file_beyond_the_limit_are_kept_and_end_with_code_
     EXPECT_EQ(result.err.find("could not bring all errors"), std::string::npos) << result.err;
   }
   EXPECT_EQ(run("moving.glb -o out.glb --force --max-targets 2 --tolerance 90").exit_code, 0);
+}
+
+TEST_F(BakeCli, a_tolerance_that_is_given_precedes_viewers_that_are_not_named) {
+  const char* const data = std::getenv("CHRONORMAL_DATA");
+  if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
+  const std::string head = std::string(data) + "/rigs/blender_suzanne_two_keys.glb";
+  const ProcessResult result = run("'" + head + "' -o head.glb --tolerance 0.5 --no-audit --json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
 TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
