@@ -548,7 +548,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("moved.glb", bytes);
   advice = last_line(text_of("moved.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file again"});
-  // With --rule lerp, the audit measures errors that bake cannot correct.
+  // An audit with --rule lerp measures errors that bake cannot correct.
   expect_words(last_line(text_of("hinge.glb --rule lerp")), {"leave --rule out to see what bake can do"});
   // A tolerance below one degree also lowers the limit for "nothing to do".
   expect_words(last_line(text_of("baked.glb --tolerance 0.1")),
