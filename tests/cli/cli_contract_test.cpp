@@ -716,7 +716,7 @@ TEST_F(Cli, options_that_an_input_has_no_use_for_are_refused) {
   for (const char* arguments :
        {"audit moving.glb --fps 24", "inspect moving.glb --fps 24", "bake moving.glb --fps 24 -o o.glb",
         "sample a.obj b.obj --world --times 0 -o n.npy", "compare a.obj b.obj --world",
-        "compare --sample twist --world", "bake a.obj b.obj --poses random -o o.glb", "audit moving.glb --tears -1",
+        "compare --sample twist --world", "bake a.obj b.obj --poses random -o p.glb", "audit moving.glb --tears -1",
         "audit moving.glb --tears 99999999999999999999", "query facing a.obj b.obj --direction 0,0,1 --eye 1,2,3"}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments << "\n" << result.err;
