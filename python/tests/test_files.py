@@ -85,7 +85,7 @@ class ReadTest(unittest.TestCase):
                 (lambda: cn.read([]), ValueError, ""),
                 (lambda: cn.read(sample="twist", fps=0), ValueError, "fps"),
                 (lambda: cn.read(sample="twist").unit_normals([2]), ValueError, "0 to 1"),
-                (lambda: cn.read(sample="twist").unit_normals(), ValueError, "times: times are missing"),
+                (lambda: cn.read(sample="twist").unit_normals(), ValueError, "times: the times are missing"),
                 (lambda: targets.unit_normals([0]), ValueError, ""),
                 (lambda: targets.unit_normals(weights=[[1, 2]]), ValueError, "weights|targets"),
                 (lambda: targets.unit_normals(weights=[1, 2]), ValueError, r"weights: the shape must be .*but is \(2,\)"),
