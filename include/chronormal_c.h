@@ -157,7 +157,7 @@ typedef struct chronormal_target {
 /* Normals of blend shapes, exact at any weights. */
 typedef struct chronormal_blend chronormal_blend;
 
-/* Prepares blend shapes. The tolerance in the options must be 1e-6, and the weighting area. */
+/* Prepares blend shapes. The options must have the tolerance 1e-6 and the weighting "area". */
 CHRONORMAL_API chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronormal_vectors base,
                                                          const chronormal_target* targets, size_t target_count,
                                                          const chronormal_options* options, chronormal_blend** result);
@@ -165,7 +165,8 @@ CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
 /* Writes the unit normals of the blend shapes at `weights`, which has a weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
-/* Sets the weights and moves the vertices, once per frame. Afterwards several threads may write ranges of normals. */
+/* Sets the weights and moves the vertices. Call this function once per frame. Afterwards, several threads may write
+ * ranges of normals at the same time. */
 CHRONORMAL_API chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights);
 CHRONORMAL_API chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
                                                         size_t* zeros);

@@ -29,7 +29,7 @@ class BuildByCMake(build_ext):
                        "-DCHRONORMAL_C=OFF", "-DCHRONORMAL_INSTALL=OFF", f"-DPython_EXECUTABLE={sys.executable}"]
             generator = ["-G", "Ninja"] if shutil.which("ninja") else []
             subprocess.run(["cmake", "-S", ROOT, "-B", build, *generator, *options], check=True)
-        # Pass a number of jobs, since make without one starts every compiler at once.
+        # Pass a number of jobs, since make without a number starts every compiler at once.
         subprocess.run(["cmake", "--build", build, "--target", "_chronormal", "--parallel", str(os.cpu_count() or 1)], check=True)
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
-// Defines the functions of the package: audit, inspect, compare, bake and sample. They take bytes, and return bytes and
-// reports. They touch neither a file system nor the network. index.d.ts has the types.
+// Defines the functions of the package: audit, inspect, compare, bake and sample. The functions take bytes, return
+// bytes and reports, and touch neither a file system nor the network. index.d.ts has the types.
 import { ChronormalError } from './error.js';
 import { readNpy } from './npy.js';
 import { flagsOf } from './options.js';
@@ -32,8 +32,8 @@ async function inWorker(platform, task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
-    // Calls work(). If it throws an error, the promise of the caller is rejected with this error, because nobody else
-    // catches errors of an event handler.
+    // Calls work(). If work() throws an error, the promise of the caller is rejected with this error, because nobody
+    // else catches errors of an event handler.
     const guarded = (work) => {
       try {
         work();

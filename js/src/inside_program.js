@@ -1,3 +1,3 @@
-// The build puts this code inside the function that makes a module. The code defines the names of CommonJS, which an ES
-// module lacks.
+// The build puts this code inside Emscripten's function that makes a module of the program. The code defines `require`
+// and `__dirname`, names of CommonJS that an ES module lacks.
 var require = Module['require'], __dirname = '/';

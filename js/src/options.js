@@ -22,7 +22,7 @@ const TIMES = [(value) => isText(value) || NUMBER[0](value) || isNumbers(value),
 const isPoses = (value) => Array.isArray(value) && value.length > 0 && value.every(isNumbers);
 const WEIGHTS = [(value) => isText(value) || isNumbers(value) || isPoses(value), 'an array of numbers, an array of such arrays, or a string'];
 
-// The options of the JavaScript functions themselves. They are not passed to the program.
+// The options of the JavaScript functions themselves, which are not passed to the program.
 const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {
@@ -34,7 +34,6 @@ const CALL = {
   memoryLimit: NUMBER,
 };
 
-// The options for reading the input.
 const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG, path: TEXT };
 const MESHES = { base: TEXT, animation: NAME };
 

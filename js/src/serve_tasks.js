@@ -1,4 +1,5 @@
-// Does long work in a separate thread. It takes tasks one by one, and reports the progress and the result of each task.
+// Does long work in a separate thread, which takes tasks one by one, and reports the progress and the result of each
+// task.
 import { useCompiled } from './run.js';
 import { perform } from './task.js';
 

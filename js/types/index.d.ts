@@ -1,4 +1,4 @@
-/** Declares the functions that audit and bake files. They touch neither a file system nor the network. */
+/** Declares the functions that audit and bake files. The functions touch neither a file system nor the network. */
 import type { AuditReport, BakeReport, CompareReport, Elements, InspectReport, PathName, PlanReport, Weighting } from './reports.js';
 
 export * from './reports.js';
@@ -34,8 +34,8 @@ export interface CallOptions {
 
 /**
  * The options for reading the input. All options except those of CallOptions are options of the program, written in
- * camel case: `maxTargets: 112` is `--max-targets 112`. `chronormal help COMMAND` explains them. Options with other
- * names, and values of another type, are refused.
+ * camel case: `maxTargets: 112` is `--max-targets 112`. `chronormal help COMMAND` explains the options. Options with
+ * other names, and values of another type, are refused.
  */
 export interface ReadOptions extends CallOptions {
   allowExternal?: boolean;
@@ -64,7 +64,7 @@ interface MotionOptions extends ReadOptions {
 export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
-  /** The viewers, besides the specification, whose normals are judged. */
+  /** The viewers whose rendered normals are judged, besides the normals that the glTF specification demands. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
   host?: Viewer | 'all' | Array<Viewer | 'all'>;
@@ -81,8 +81,8 @@ export interface AuditOptions extends MotionOptions {
 
 export interface BakeOptions extends ReadOptions {
   /**
-   * The viewers that the result is made for. Default: all viewers that add up deltas; other viewers get no
-   * worse if possible.
+   * The viewers that the result is made for. Default: all viewers that add up deltas. The errors in other viewers
+   * become no larger if possible.
    */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
@@ -142,7 +142,7 @@ export interface SampleOptions extends MotionOptions {
   weights?: number[] | number[][] | string;
   /** The scheme that interpolates between the exact normals at the ends of segments. Default: every normal is exact. */
   scheme?: Scheme;
-  /** The number of steps per segment. The scheme then computes each step from the previous one. */
+  /** The number of steps per segment. With this option, the scheme computes each step from the previous one. */
   step?: number;
   elements?: Elements;
   crease?: number;

@@ -195,7 +195,7 @@ def curves(p0: ArrayLike, p1: ArrayLike, faces: _Faces, elements: _Elements = "v
     weighting  how the faces around a vertex count: "area" (exact), or fitted: "angle", "uniform", "area-angle", "max",
                "inverse-edges", "inverse-roots"
     tolerance  radians: the largest error of a normal; 1e-3 takes a third of the memory
-    weld       whether vertices at one point at both ends share a normal, so that seams do not show
+    weld       True: vertices that are at one point both at t = 0 and at t = 1 share a normal, so that seams do not show
     threads    0: all cores; k: at most k
     """
     offsets, corners = _polygons(faces)

@@ -69,7 +69,7 @@ inline std::string shape_text(const py::array& array) {
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 
-// Makes a view of an (n, 3) array of float32.
+// Makes a view of an array of float32. Raises ValueError unless the shape is (n, 3).
 template <int kFlags>
 VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
   if (array.ndim() != 2 || array.shape(1) != 3)
@@ -91,7 +91,7 @@ py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
   return py::array_t<T>(std::move(shape), data, owner);
 }
 
-// Makes the topology of a mesh from two arrays of uint32.
+// Makes the topology of a mesh from the offsets and the corners of its faces.
 Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
 
 // Makes a motion from keyframes (T, V, 3) at `times`, in seconds.

@@ -93,8 +93,8 @@ class Curves : public ZeroedObject {
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
   }
 
-  // Returns the control normals n0, m, n1 of n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1, which is the normal before scaling
-  // to length 1, as an array (size, 3, 3).
+  // Returns the control normals n0, m, n1 as an array (size, 3, 3). n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1 is the
+  // normal before scaling to length 1.
   [[nodiscard]] py::array control_normals() const {
     const std::size_t count = size();
     std::vector<float> values(9 * count);

@@ -62,8 +62,8 @@ std::string bytes_of_text(const py::handle& text) {
   return py::reinterpret_steal<py::bytes>(made);
 }
 
-// A motion that was read or made from arrays. The object also gives the arrays of the motion, and normals at chosen
-// moments, to Python.
+// A motion that was read from files, or made from arrays. The object also gives the arrays of the motion, and normals
+// at chosen moments, to Python.
 class ReadMotion : public ZeroedObject {
  public:
   explicit ReadMotion(const py::dict& source) : bytes_(source["bytes"]) {

@@ -1,4 +1,4 @@
-// Answers queries about whole intervals of time. They take keyframes, and return dicts of arrays.
+// Answers queries about whole intervals of time. A query takes keyframes, and returns a dict of arrays.
 #include <cmath>
 #include <type_traits>
 #include <variant>

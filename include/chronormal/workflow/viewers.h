@@ -2,7 +2,7 @@
 /// rewrites the file before it is shown.
 ///
 /// The specification demands normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every viewer here
-/// renders normalize(N' + sum_k w'_k D'_k) instead, where N', D'_k and w'_k are the values that it stores:
+/// renders normalize(N' + sum_k w'_k D'_k) instead, where N', D'_k and w'_k are the values that the viewer stores:
 ///
 ///     sum       N' = N, D' = D                             as 32-bit floats, or deltas as 16-bit ones
 ///     unit      N' = u(N), D' = u(N + D) - u(N)            a unit normal u for each target: the direction of N + D, or
@@ -38,15 +38,15 @@ namespace chronormal {
 /// that stand for [-1, 1]. The formulas are at the top of this file.
 enum class NormalRule { kSum, kUnit, kClamped };
 
-/// The rules by which viewers play a track of weights. A resampled track has kViewerSampleRate values per second, with
-/// linear interpolation between them, or none if the track is a STEP track.
+/// The rules by which viewers play a track of weights. A resampled track has kViewerSampleRate values per second. A
+/// viewer interpolates between these values linearly, or not at all if the track is a STEP track.
 enum class TrackRule {
   kSpecified,  ///< tracks are played as appendix C of the glTF specification demands
   /// A CUBICSPLINE track is resampled from time 0 to its last key; other tracks are played as specified.
   kSplinesResampled,
   kAllResampled,  ///< every track is resampled, from the first key of the animation on
-  /// Tangents of a CUBICSPLINE track are multiplied by the share of the time between two keys that has elapsed, instead
-  /// of by the whole time between these keys.
+  /// Tangents of a CUBICSPLINE track are multiplied by the elapsed share of the time between two keys, from 0 to 1,
+  /// instead of by the whole time between these keys.
   kSplinesWithoutDuration,
   /// Only the in-tangents of a CUBICSPLINE track are taken, and read as the in-tangent, value and out-tangent of each
   /// key. The weights of later keys, for which no numbers are left, are zero.
@@ -67,12 +67,12 @@ struct Viewer {
   std::string_view title;  ///< the name for users: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
   /// The number of bits of a stored number. For kSum, the number is the float that stores a component of a delta. For
-  /// kUnit, it is one of the two octahedral numbers that store a direction, or one of the four numbers of a quaternion.
-  /// For kClamped, it is the integer that stores a component, including its sign.
+  /// kUnit, the number is one of the two octahedral numbers that store a direction, or one of the four numbers of a
+  /// quaternion. For kClamped, the number is the integer that stores a component, including the sign.
   int bits = 32;
   /// For kUnit, true if u is the third axis of the rotation of a stored quaternion. The quaternion stands for the frame
-  /// that Frisvad's rule makes from the vector N or N + D. The rule is meant for unit vectors, but viewers apply it to
-  /// vectors of any length. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
+  /// that Frisvad's rule makes from the vector N or N + D. The rule is meant for unit vectors, but viewers apply the
+  /// rule to vectors of any length. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
   bool by_frame = false;
   bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;
@@ -171,7 +171,7 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 /// Returns the value D' that a viewer stores for the delta D of a target. For each unit of the target's weight, a
 /// viewer adds D' to kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
-/// Returns the same value as kept_delta() without `kept_normal`, for callers that already know the result of
+/// Returns the same value as kept_delta() above, for callers that already have `kept_normal`, the result of
 /// kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
