@@ -1,6 +1,6 @@
 /// Converts numbers from and to text, like <charconv>. Some standard libraries cannot convert floating-point numbers
-/// yet (libc++ 13, which the wasm module uses). In their place, fast_float reads numbers and fmt writes the same
-/// characters.
+/// yet (libc++ 13, which the wasm module uses). With such a library, fast_float reads numbers, and fmt writes the same
+/// characters as <charconv>.
 ///
 /// For numbers out of range, libraries differ: from_chars() returns result_out_of_range, or an infinite number or 0.
 /// Callers must expect all of these.

@@ -11,13 +11,13 @@
 namespace chronormal::inline internal {
 
 /// The smallest number of bytes, read and written in one pass, for which results are written to memory past the caches.
-/// All arrays of results must then be aligned to 64 bytes (and for recompute and the schemes be packed, without gaps).
-/// In a shared cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody
-/// reads them. Measurements on a machine with such a cache, with and without a reader afterwards, show that writing
-/// past the caches is faster from 20 to 30 MiB on.
+/// All arrays of results must then be aligned to 64 bytes. For recompute and the schemes, the arrays must also be
+/// packed, without gaps. In a shared cache of 32 MiB, such results would evict data that is read next, and would be
+/// evicted before anybody reads them. Measurements on a machine with such a cache, with and without a reader
+/// afterwards, show that writing past the caches is faster from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
-/// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees them with free_aligned(). Throws
+/// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees the memory with free_aligned(). Throws
 /// std::bad_alloc.
 [[nodiscard]] std::byte* allocate_aligned(std::size_t size);
 void free_aligned(void* memory) noexcept;

@@ -1,6 +1,6 @@
 // Runs loops on one pool of threads for the whole process. A loop is a Job on the stack of its caller, and is in the
 // pool's list while it may have pieces that no thread has taken. The caller takes pieces in order, and so do workers.
-// The number of workers of a loop is limited; a worker that may join takes a seat.
+// The number of workers of a loop is limited: a worker that joins takes one of the loop's seats.
 //
 //     a loop in a piece   is a job whose parent is the job of that piece. It shares the seats of the outermost job, so
 //                         that a ThreadLimit applies to all nested loops. Workers join nested loops when they find
@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-// The limit of threads for loops that this thread begins; 0 if there is none.
+// The limit of threads for loops that this thread begins; 0 if there is no limit.
 thread_local std::size_t thread_limit = 0;
 // The interruption that can end the computation for which this thread works.
 thread_local Interruption* interruption = nullptr;
@@ -284,7 +284,7 @@ class Pool {
 
   std::mutex mutex_;
   std::condition_variable opened_;  // notified when there is a job for workers
-  // Notified when a job has no helpers any more, or when there is a job with which a waiting caller can help.
+  // Is notified when a job has no helpers any more, or when there is a job with which a waiting caller can help.
   std::condition_variable changed_;
   std::vector<std::thread> workers_;
   std::atomic<std::size_t> worker_count_ = 0;

@@ -155,7 +155,7 @@ double exp2(double x) noexcept {
 double log(double x) noexcept {
   if (x == 0) return -kInfinity;
   if (!(x > 0) || std::isinf(x)) return x > 0 ? x : std::numeric_limits<double>::quiet_NaN();
-  // The following writes x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), using the upper half of the bits. Subnormal
+  // x is written as 2^exponent y with y in [sqrt(1/2), sqrt(2)), by operations on the upper half of the bits. Subnormal
   // numbers are first multiplied by 2^54.
   constexpr std::uint64_t kOne = 0x3FF0000000000000, kRootOfHalf = 0x3FE6A09E00000000;
   const bool is_subnormal = x < std::numeric_limits<double>::min();

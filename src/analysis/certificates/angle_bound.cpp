@@ -21,7 +21,8 @@ constexpr double kShortest = 1.1e-8;
 // A bound of the rounding error of a sum of a few products, where each product is at most 1.
 constexpr double kRounding = 32 * kUnitRoundoff;
 
-// The share of coefficient i of degree M times coefficient j of degree N in coefficient i + j of their product.
+// Entry [i][j] is the factor with which coefficient i of a polynomial of degree M, times coefficient j of a polynomial
+// of degree N, enters coefficient i + j of the product of the two polynomials.
 template <std::size_t M, std::size_t N>
 constexpr auto kShares = [] {
   std::array<std::array<double, N + 1>, M + 1> shares{};

@@ -1,6 +1,6 @@
 /// Bounds the error of a straight line between two directions, as viewers draw it between two keys, over a piece of a
-/// segment. It serves callers inside the library that need certificates, as in analysis/certify.h, for normals that no
-/// scheme made.
+/// segment. Callers inside the library use this header to certify, as in analysis/certify.h, normals that no scheme
+/// made.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
 #define CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
 
@@ -10,7 +10,8 @@
 namespace chronormal::inline internal {
 
 /// The largest error that a viewer adds to a line of unit vectors by computing in float32. The viewer rounds two deltas
-/// of up to 2, their weights, and a sum of three terms. Together these errors are less than 25 times 2^-24.
+/// with lengths of up to 2, their weights, and a sum of three terms. Together these errors are less than 25 times
+/// 2^-24.
 inline constexpr double kViewerRounding = 32 * 0x1p-24;
 
 /// Returns an upper bound of the angle, in radians, between n(t) and the line from `from` (at t = a) to `to` (at t =

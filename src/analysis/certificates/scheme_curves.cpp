@@ -123,8 +123,8 @@ ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
   angle_ = static_cast<double>(c[is_great ? 6 : 9]);
   const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
   largest_ = std::max(p, q);
-  // The rounding errors, in units of e = 2^-24, are those of t and of its product with the angle A, those of sine and
-  // cosine (at most 1.2e-7 = 2.02 e), and those of two products and two additions.
+  // Rounding errors come from t, the product of t with the angle A, sine and cosine (at most 1.2e-7 = 2.02 e, where e =
+  // 2^-24), two products, and two additions.
   double time_error = 2.01 * kE;
   if (formula == Formula::kTimedCircleArc) {
     // The warped time changes by at most `steepest` times the rounding of t, and by a few roundings of its own.
@@ -139,8 +139,8 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
   const double at = (a + (b - a) / 2) * angle_, beta = (b - a) / 2 * angle_;
   const double cosine = portable::cos(at), sine = portable::sin(at);
   const Vec3d p = cosine * p_ + sine * q_, q = cosine * q_ - sine * p_;
-  // The formulas below use x in [-beta, beta] and two series. In cos x = 1 - x^2 / 2 + x^4 / 24, the term x^4 is within
-  // beta^4 / 8 of beta^2 x^2 - beta^4 / 8. The other series is sin x = x - x^3 / 6.
+  // The formulas below hold for x in [-beta, beta]. In cos x = 1 - x^2 / 2 + x^4 / 24, the formulas replace x^4 by
+  // beta^2 x^2 - beta^4 / 8, with an error of at most beta^4 / 8. For the sine, they use sin x = x - x^3 / 6.
   const double square = beta * beta, fourth = square * square;
   const double constant = 1 - fourth / 192, quadratic = square / 24 - 0.5;
   const Vec3d outer = w_ + (constant + quadratic * square) * p, inner = w_ + (constant - quadratic * square / 3) * p;
@@ -164,7 +164,7 @@ SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcep
 }
 
 CurvePiece SphericalCurve::over(double a, double b) const noexcept {
-  // The largest angle between two vectors, in radians, for which float32 still determines their slerp.
+  // The largest angle between two vectors, in radians, for which float32 determines their slerp.
   constexpr double kMostTurn = std::numbers::pi - 1e-3;
   if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
@@ -183,8 +183,8 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
       const double turn = angle_between(from.at, to.at);
       const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
       if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
-      // If one end of an arc with the angle T moves by 1, a point at a share of the arc moves by sin(share T) / sin T.
-      // `factor` bounds this quotient for the shares on this piece.
+      // If one end of an arc with the angle T moves by the distance 1, the point that divides the arc at `share` moves
+      // by sin(share T) / sin T. `factor` bounds this quotient for the shares on this piece.
       const double sine = portable::sin(most);
       const auto factor = [most, sine](double share) {
         if (most < 1e-6) return share * (1 + 1e-9);

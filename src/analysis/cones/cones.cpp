@@ -44,8 +44,8 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
   }
 }
 
-// The direction in some cones that is farthest from a given unit axis, described by the sine and cosine of its angle to
-// this axis.
+// The direction, of all directions in a list of cones, that is farthest from a given unit axis. The direction is
+// described by the sine and the cosine of its angle to this axis.
 struct Farthest {
   double sine = 0, cosine = 2;
   Vec3d axis;  // the axis of the cone to which the direction belongs
@@ -55,8 +55,8 @@ struct Farthest {
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }
 };
 
-// Finds the direction in some cones that is farthest from an axis. across_of(v, along) is the length of the part of v
-// that is perpendicular to the axis.
+// Finds the direction in a list of cones that is farthest from an axis. across_of(v, along) is the length of the part
+// of v that is perpendicular to the axis.
 template <class AcrossOf>
 Farthest farthest_of(std::span<const NormalCone> cones, const Vec3d& axis, const AcrossOf& across_of) noexcept {
   Farthest farthest;

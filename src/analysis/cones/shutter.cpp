@@ -55,8 +55,8 @@ struct Centred {
   explicit Centred(const Bernstein<Vec3d, 2>& n)
       : a(0.25 * (n[0] + 2.0 * n[1] + n[2])), b(0.5 * (n[2] - n[0])), c(0.25 * (n[0] - 2.0 * n[1] + n[2])) {}
 
-  // Returns the k with which |n(s)|^2 differs from |a|^2 by at most k |a|^2 for all complex |s| <= kRadius. The result
-  // is infinite or NaN if a = n(0) is zero.
+  // Returns a number k such that |n(s)|^2 differs from |a|^2 by at most k |a|^2 for all complex s with |s| <= kRadius.
+  // The result is infinite or NaN if a = n(0) is zero.
   [[nodiscard]] double nearness() const {
     const double q1 = 2 * dot(a, b), q2 = dot(b, b) + 2 * dot(a, c), q3 = 2 * dot(b, c), q4 = dot(c, c);
     const double sum = kRadius * (std::fabs(q1) + kRadius * (std::fabs(q2) + kRadius * (std::fabs(q3) + kRadius * q4)));

@@ -123,7 +123,7 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
   return t;
 }
 
-// The data of a segment that the passages of all points need.
+// The data of a segment that are the same for all points.
 struct MeshInSegment {
   Segment segment;  // the segment, whose topology is the triangles
   std::span<const std::uint32_t> faces;
@@ -164,7 +164,7 @@ class Passage {
     return sum;
   }
 
-  // Appends the crossings of this point, ordered by t. The index of the point is left to the caller.
+  // Appends the crossings of this point, ordered by t. The caller fills in the index of the point.
   void find_crossings(std::vector<Crossing>& result) {
     std::vector<std::uint32_t> open;
     visit_boxes(
@@ -182,8 +182,8 @@ class Passage {
   }
 
  private:
-  // A root of the volume of a triangle (crossing_signs.h) that is its only root in a cell of time. At the root the
-  // point is between the edges of the triangle, so the point crosses the triangle.
+  // A time at which the volume of a triangle (crossing_signs.h) is zero. The volume has no other zero in `cell`. At
+  // this time the point is between the edges of the triangle, so the point crosses the triangle.
   struct Root {
     std::uint32_t triangle;
     Cell cell;
@@ -245,8 +245,8 @@ class Passage {
     return signs.volume_at(t);
   }
 
-  // Adds crossings of the open triangles within a cell of at most two ticks, which counts as one moment. Their number
-  // is the change of the winding number that the known roots do not explain.
+  // Adds crossings of the open triangles within a cell of at most two ticks, which counts as one moment. The number of
+  // added crossings is the change of the winding number that the known roots do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {

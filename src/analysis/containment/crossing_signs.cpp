@@ -202,7 +202,6 @@ class ExactCell {
     return {axis == 0 ? at.x : axis == 1 ? at.y : at.z, axis == 0 ? left.x : axis == 1 ? left.y : left.z};
   }
 
-  // Adds (p - q) * weight to the integer `result`.
   void add_difference(const Unrounded& p, const Unrounded& q, const UnitFraction& weight,
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;

@@ -30,8 +30,8 @@ struct DeltaNormals {
   std::vector<BlendTarget> deltas;  ///< D_i of each target; its `vertices` are numbers of elements
 };
 
-/// Writes N + sum_i w_i D_i of all elements. This is the direction that a viewer renders, not scaled to length 1.
-/// Preconditions: `weights` has a value for each target, and `result` a vector for each element.
+/// Writes N + sum_i w_i D_i of all elements. The sum has the direction that a viewer renders, and is not scaled to
+/// length 1. Preconditions: `weights` has a value for each target, and `result` a vector for each element.
 void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 
 class DeltaFit {
@@ -48,9 +48,9 @@ class DeltaFit {
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
   /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() becomes as small as
-  /// possible, for each element separately. The rows may not determine the deltas, if there are fewer rows than targets
-  /// or if some weights always change together. The result then has those deltas that are nearest to the start deltas.
-  /// Cost: for each element, a linear system with one equation for each of its deltas.
+  /// possible, for each element separately. If there are fewer rows than targets, or if some weights always change
+  /// together, the rows may leave deltas undetermined. The result then has those deltas that are nearest to the start
+  /// deltas. Cost: for each element, a linear system with one equation for each of its deltas.
   void solve();
 
  private:

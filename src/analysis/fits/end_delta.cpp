@@ -4,9 +4,9 @@
 // angles are below 90 degrees, their maximum over w has a single minimum in s. At this s, the worst angle behind equals
 // the worst angle ahead, so s is the root of a monotone function.
 //
-// The search takes the maximum over a list of sampled w. It then adds the w at which the angle for the found s is
-// largest to this list, and searches again, until the error can hardly become smaller (an exchange as in the algorithm
-// of Remez).
+// The search takes the maximum over a list of sampled w. To this list, the search then adds the w at which the angle
+// for the found s is largest, and searches again, until the error can hardly become smaller (an exchange as in the
+// algorithm of Remez).
 
 #include "analysis/fits/end_delta.h"
 
@@ -100,15 +100,15 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Returns the key of the angle between the line and a sample. If the line is zero at the sample, the direction of the
-// line jumps there, and both directions count.
+// Returns the key (angle_of_key()) of the angle between the line and the normal of a sample. If the line is zero at the
+// sample, the direction of the line jumps there, and both directions count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
   if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
-// Returns the largest key of the angles between the line and the normals at all samples.
+// Returns the largest key (angle_of_key()) of the angles between the line and the normals of all samples.
 double largest_key(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) largest = std::max(largest, line_key(from, to, samples[i]));
@@ -175,7 +175,8 @@ class ScaleSearch {
   }
   void clear() noexcept { count_ = 0; }
 
-  // Returns the logarithm of the best s for the samples, and writes the key of the largest angle.
+  // Returns the logarithm of the best s for the samples, and writes the key (angle_of_key()) of the largest angle at
+  // this s.
   [[nodiscard]] double best_log_scale(double guess, double& key) const noexcept {
     double low = -kRange, high = kRange;
     const double best = below_right_angle(low, high) ? balance(low, high, guess) : best_of_grid();

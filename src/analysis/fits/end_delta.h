@@ -1,10 +1,9 @@
 /// Finds the best delta for a viewer that can only add one delta per target and renders base + w delta, for w in [0,
 /// 1].
 ///
-/// A straight line between two normals has the right direction at both ends, whatever their lengths: u0 + w (s u1 - u0)
-/// for any s > 0. A search in one dimension for each element finds the s for which the largest angle to the exact
-/// normals is smallest (docs/theory.md, section 4.8). If the normal has degree 0 or 1, the line with s = |n1| / |n0| is
-/// exact.
+/// A straight line between two normals of any lengths has the right direction at both ends: u0 + w (s u1 - u0) for any
+/// s > 0. A search in one dimension for each element finds the s for which the largest angle to the exact normals is
+/// smallest (docs/theory.md, section 4.8). If the normal has degree 0 or 1, the line with s = |n1| / |n0| is exact.
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_FITS_END_DELTA_H_

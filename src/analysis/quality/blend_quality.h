@@ -32,8 +32,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
 
 /// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for
-/// each element separately. u(w) is the exact unit normal. The rows may not determine the deltas, if there are fewer
-/// rows than targets or if some weights always change together. The result is then closest to the end-point deltas.
+/// each element separately. u(w) is the exact unit normal. If there are fewer rows than targets, or if some weights
+/// always change together, the rows may leave deltas undetermined. The result is then closest to the end-point deltas.
 /// Cost: an evaluation for each row, and for each element a linear system with one equation for each target that moves
 /// the element. Precondition: weights is (rows, targets).
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);

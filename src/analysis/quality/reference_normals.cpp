@@ -1,5 +1,5 @@
-// Computes the exact normals with which all schemes are compared. They are cross products of vertices at t, in double.
-// If double cannot tell a normal from its rounding error, integers compute it.
+// Computes the exact normals with which all schemes are compared. A normal is a sum of cross products of edges at t, in
+// double. If double cannot tell this sum from its rounding error, integers compute the normal.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>

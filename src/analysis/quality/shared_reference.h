@@ -1,4 +1,4 @@
-/// Computes the exact normals of analysis/quality.h for elements that share faces with many corners. Private to the
+/// Computes the exact normals of analysis/quality.h for elements that share polygons with many corners. Private to the
 /// library.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_

@@ -46,7 +46,7 @@ struct EdgeUse {
   std::uint32_t far = 0;
   std::uint32_t face = 0;
   std::uint32_t near_vertex = 0, far_vertex = 0;  // the face's vertices at the lower and the higher point
-  // True if the face passes the edge from the lower point to the higher one.
+  // True if the face passes the edge from the lower point to the higher point.
   bool is_forward = false;
 };
 

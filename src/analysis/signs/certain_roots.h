@@ -2,11 +2,11 @@
 /// number of roots is certain despite the errors.
 ///
 /// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them means
-/// exactly one root. So a part of [0, 1] is settled in two cases. Either all coefficients have the same certain sign.
-/// Or the coefficients begin with one certain sign, go on with some coefficients of unknown sign, and end with the
-/// other certain sign. Any other part is halved, up to kMostHalvings times. If a part is then still not settled,
-/// integers decide (analysis/signs/exact_roots.h). The only root of a part is bracketed by two places at which the
-/// polynomial is certainly not zero.
+/// exactly one root. So a part of [0, 1] is settled in two cases: if all coefficients have the same certain sign, or if
+/// the coefficients begin with one certain sign, go on with some coefficients of unknown sign, and end with the other
+/// certain sign. Any other part is halved, up to kMostHalvings times. If a part is then still not settled, integers
+/// decide (analysis/signs/exact_roots.h). The only root of a part is bracketed by two places at which the polynomial is
+/// certainly not zero.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 
@@ -41,8 +41,8 @@ class CertainRoots {
 
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
-  // Settles the part of [0, 1] that begins at t0 and is `width` wide. p has the Bernstein coefficients over this part.
-  // Returns false if the part could not be settled.
+  // Finds the roots in the part of [0, 1] that begins at t0 and is `width` wide. p has the Bernstein coefficients over
+  // this part. Returns false if the number of roots is not certain.
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {

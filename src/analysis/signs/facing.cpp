@@ -2,7 +2,7 @@
 // stages settles the faces for which its answer is certain.
 //
 // 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
-//    if all are clearly positive, or all negative, so is f. This is the answer for most faces.
+//    if all are clearly positive, or all negative, so is f. This stage settles most faces.
 // 2. The same coefficients with the bound of the face's own rounding, and their roots: the only root in lanes
 //    (analysis/signs/kernels/facing_lanes.h), several roots one face at a time (analysis/signs/certain_roots.h).
 // 3. Integers (analysis/signs/exact_roots.h), for faces that touch edge-on, are edge-on at an end or in the middle, or
@@ -33,8 +33,8 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// Returns true if double represents products with the vector to the viewer. This is so if no nonzero component of the
-// view is smaller than the smallest float32.
+// Returns true if products with the vector to the viewer do not underflow in double. The condition is that no nonzero
+// component of the view is smaller than the smallest float32.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
   return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&
@@ -157,7 +157,8 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
 }
 
 // The numbers of digits that wide integers need here. Differences of doubles up to 2^128 have 1,203 bits. A vector to
-// the viewer is a sum of a few differences, or of their multiples by the integers of two times.
+// the viewer is a sum of a few differences, or of differences that are multiplied by the integers of two times
+// (TimeFraction).
 constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kPlaceDigits = 52;
 constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits + 2 * TimeFraction::kDigits + 2;
 template <std::size_t kDigits>

@@ -2,7 +2,7 @@
 /// discontinuous when it is interpolated or rendered.
 ///
 /// "Nearly" means that |n(t)| falls below kCollapseShare times the largest control normal. This limit is far above the
-/// rounding of float32, so that it finds faces that were made to collapse and then rounded. The limit is far below any
+/// rounding of float32, so that faces that were made to collapse and then rounded are found. The limit is far below any
 /// length that an author intends. The functions of analysis/signs.h decide exactly whether a normal vanishes.
 ///
 /// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
@@ -39,8 +39,8 @@ struct NearCollapses {
 };
 
 /// Returns true if a quick test proves that a normal neither vanishes nor nearly vanishes. The test shows that all
-/// control normals are in one half space. The test succeeds for almost every face. If the test fails, nothing is known
-/// (see find_collapses()).
+/// control normals are in one half space. The test succeeds for almost every face. If the test fails, nothing is known,
+/// and find_near_collapses() decides.
 [[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
   const Vec3d w = c.n0 + c.n1;
   const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});

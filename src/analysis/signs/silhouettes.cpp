@@ -36,7 +36,6 @@ struct Event {
   std::size_t face = 0;  // 0 for the first face at the edge, 1 for the second
 };
 
-// Adds the silhouettes of one edge to the result.
 void add_silhouettes(const Silhouette& edge, const std::array<const Facing*, 2>& faces,
                      std::vector<Silhouette>& result) {
   const auto before = [](const Event& p, const Event& q) { return p.change.lower < q.change.lower; };

@@ -1,6 +1,6 @@
 /// Checksums (CRC-32, as in zip files) of bytes, of numbers, and of texts that end or begin with their own checksum.
-/// Journals, parts of shards and zip files use them to detect data that are damaged or belong to another run. Private
-/// to io and workflow.
+/// Journals, parts of shards and zip files use these checksums to detect data that are damaged or belong to another
+/// run. Private to io and workflow.
 #ifndef CHRONORMAL_IO_BYTES_CHECKSUM_H_
 #define CHRONORMAL_IO_BYTES_CHECKSUM_H_
 
@@ -13,8 +13,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the checksum of a text that ends with `bytes`. `so_far` is the checksum of the text before `bytes`, and 0 if
-/// there is none.
+/// Returns the checksum of a text that ends with `bytes`. `so_far` is the checksum of the text before `bytes`, or 0 if
+/// no text comes before.
 [[nodiscard]] std::uint32_t checksum_of(std::string_view bytes, std::uint32_t so_far = 0);
 
 /// Returns the checksum of two blocks of bytes in a row from the checksum of each block. `second_size` is the size of

@@ -8,7 +8,7 @@
 /// A file may ask for 32 MiB, or for `times` times as many bytes as were read, whichever is larger. Memory that the
 /// user asks for, such as poses or moments to sample, does not count.
 ///
-/// Threads    a plain value; no thread needs care.
+/// Threads    a plain value, without memory that other objects share.
 #ifndef CHRONORMAL_IO_BYTES_EXPANSION_H_
 #define CHRONORMAL_IO_BYTES_EXPANSION_H_
 

@@ -59,8 +59,8 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
     return Error{ErrorCode::kFailed, place, "this is a device, whose data may never end; name a file"};
 
   FileBytes file;
-  // The kernel's own files, as in /proc, report size 0. Most of them have an end, but reading the kernel's log waits
-  // for more messages.
+  // The kernel's own files, as in /proc, report size 0. Most of these files have an end, but reading the kernel's log
+  // waits for more messages.
   const bool has_no_size = !is_stdin && status->is_file() && status->size == 0;
   if (has_no_size) never_wait(descriptor);
   if (!is_stdin && status->is_file() && !has_no_size) {

@@ -1,4 +1,4 @@
-// Reads a journal once, when the journal is opened. After that it only writes at the end of the file.
+// Reads a journal once, when the journal is opened, and afterwards only writes at the end of the file.
 #include "io/bytes/journal.h"
 
 #include <algorithm>

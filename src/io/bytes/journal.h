@@ -1,4 +1,4 @@
-/// A file that lists the finished work of a run, so that a later run can go on where this one was interrupted. Private
+/// A file that lists the finished work of a run, so that a later run can go on where this run was interrupted. Private
 /// to io, workflow and the program.
 ///
 ///     1a2b3c4d {"chronormal": "0.2.0", ...}       the run: what decides its result, as a text that the caller chooses
@@ -37,7 +37,7 @@ class Journal {
   [[nodiscard]] const std::vector<std::string>& records() const noexcept { return records_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Returns true if the journal has no records, neither of an earlier run nor of this one.
+  /// Returns true if the journal has no records, neither of an earlier run nor of this run.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
 
   /// Writes a record to the end of the file at once; records() does not list the new record. Errors: kFailed with the

@@ -51,9 +51,8 @@ class OutputFile {
   /// lies in memory if the output is a stream or a device. Errors: those of Spool::beside().
   [[nodiscard]] Result<Spool> spool() const;
 
-  /// Appends bytes to the file.
+  /// Append bytes to the file, or several pieces one behind the other.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }
-  /// Appends several pieces, one behind the other.
   [[nodiscard]] Status append(std::span<const std::string_view> pieces);
 
   /// Writes bytes from byte `at` of the file on. If the output is a stream, all such bytes are held in memory until

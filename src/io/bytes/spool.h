@@ -42,7 +42,7 @@ class Spool {
   /// Adds bytes behind all others. If the file cannot be written, status() returns the error from then on, and later
   /// calls add nothing.
   void add(std::string bytes);
-  /// Adds bytes that the caller still owns. The bytes are copied only if the spool is in memory.
+  /// Adds bytes that the caller continues to own. The bytes are copied only if the spool is in memory.
   void append(std::string_view bytes);
   /// Forgets all bytes in the spool.
   void clear();

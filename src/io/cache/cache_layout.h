@@ -4,8 +4,8 @@
 ///     byte begin                       sample 0: (V, 3) numbers, float32 or float64
 ///     byte begin + 3 V item_size       sample 1, and so on
 ///
-/// PC2 files, MDD files and arrays of NumPy in C order have this form. Their readers find the layout, and then read the
-/// samples by it.
+/// PC2 files, MDD files and arrays of NumPy in C order have this form. The readers of these files find the layout, and
+/// then read the samples by the layout.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_CACHE_LAYOUT_H_

@@ -67,8 +67,8 @@ struct MayaCacheDescription {
 ///
 /// Errors: those of read_maya_description() and read_maya_points(), with the file name in the place; kFailed for files
 /// that cannot be opened; kInvalidInput with the missing time and the file, if a regularly sampled channel lacks
-/// samples that the description declares. If `resolve` is given, it finds files by their paths. In this case, a cache
-/// with a file for each frame gives kUsage, because only a folder can list such files.
+/// samples that the description declares. If `resolve` is given, this function finds files by their paths. In this
+/// case, a cache with a file for each frame gives kUsage, because only a folder can list such files.
 [[nodiscard]] Result<PositionCache> read_maya_cache(
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});

@@ -1,4 +1,5 @@
-/// MD2, the animated models of Quake II. It is little endian, with a header of 17 int32, of which these are read:
+/// MD2, the animated models of Quake II. The format is little endian, with a header of 17 int32, of which these are
+/// read:
 ///
 ///     byte  0   "IDP2"            16   bytes of a frame     56   byte of the first frame
 ///           4   version: 8        24   vertices, V
@@ -9,7 +10,7 @@
 ///
 /// A position is scale * byte + translate, in double, rounded to float32. Frames whose names tell of several clips
 /// (stand01, stand02, run1) are an animation that jumps from one clip to the next. Quake lists the corners of a
-/// triangle clockwise; the reader reverses them, so that normals point outwards.
+/// triangle clockwise; the reader reverses this order, so that normals point outwards.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_MD2_H_

@@ -1,5 +1,5 @@
-/// MDD, the point cache of LightWave. It is big endian, and has no signature at its beginning by which a reader could
-/// recognise it:
+/// MDD, the point cache of LightWave. The format is big endian, and has no signature at its beginning by which a reader
+/// could recognise it:
 ///
 ///     byte  0   int32    samples, S
 ///           4   int32    vertices, V

@@ -123,10 +123,9 @@ constexpr const char* kPadded =
     "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
     "faces.reshape(-1, 4)[:, 1:]";
 
-// Returns true if each row of `width` numbers begins with width - 1, the number of corners that follow. Rows of plain
-// faces may all begin with this number too, if they are the faces around the vertex with this number. In this case,
-// each face names that vertex only once, and no two faces share the edge opposite to that vertex; the function then
-// returns false.
+// Returns true if each row of `width` numbers begins with width - 1, the number of corners that follow. Plain faces may
+// also begin with this number, if all of them share the vertex with this index. Returns false for such faces: each face
+// names that vertex once, and no two faces share the edge opposite to that vertex.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);

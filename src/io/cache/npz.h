@@ -13,7 +13,8 @@
 /// neighbouring keyframes at the same time are a jump.
 ///
 /// The reader takes C and Fortran order, both byte orders, versions 1 to 3 of the array header, zip members stored or
-/// deflated (savez_compressed), and zip64. It skips other arrays in the file. float64 positions are rounded to float32.
+/// deflated (savez_compressed), and zip64. The reader skips other arrays in the file. float64 positions are rounded to
+/// float32.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_NPZ_H_

@@ -1,4 +1,4 @@
-/// PC2, the point cache of 3ds Max, which most programs support. It is little endian:
+/// PC2, the point cache of 3ds Max, which most programs support. The format is little endian:
 ///
 ///     byte  0   "POINTCACHE2" and a zero byte
 ///          12   int32    version: 1

@@ -46,8 +46,8 @@ struct Counts {
   return Success{};
 }
 
-/// Returns the layout of a file with the given counts, in which all times are still 0. check_counts() must have
-/// accepted the counts before.
+/// Returns the layout of a file with the given counts, in which all times are 0 until the caller sets the times.
+/// check_counts() must have accepted the counts before.
 [[nodiscard]] inline CacheLayout layout_of(Counts counts, std::size_t begin, std::endian order) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(counts.vertices);

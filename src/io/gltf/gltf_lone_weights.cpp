@@ -1,5 +1,5 @@
-// Evaluates the channel of one weight at the keys of all weights of its node. This splits the curve into more pieces. A
-// piece of a line, step or cubic is again a line, step or cubic, so the curve stays exact.
+// Evaluates the channel of one weight at the keys of all weights of its node. These additional keys split the curve
+// into more pieces. A piece of a line, step or cubic is again a line, step or cubic, so the curve stays exact.
 #include "io/gltf/gltf_lone_weights.h"
 
 namespace chronormal::inline internal::gltf {
@@ -19,7 +19,7 @@ Row key_at(const LoneKeys& keys, std::size_t k) {
   return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};
 }
 
-// Returns the slope of the line from key k to the next.
+// Returns the slope of the line from key k to the next key.
 double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }

@@ -38,7 +38,6 @@ class Assembly {
            std::optional<std::size_t> animation = std::nullopt)
       : document_(document), world_(options.world), with_skins_(options.skins), animation_(animation) {}
 
-  // Adds those primitives of a mesh that have faces.
   void add_mesh(std::optional<std::size_t> node, std::size_t mesh) {
     const std::vector<GltfPrimitive>& primitives = document_.meshes()[mesh].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -248,8 +247,7 @@ class Assembly {
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
   // Finishes the motion. `beyond` is the number of faces whose normals exceed the tolerance because skins move the
-  // faces, and key_times has the ends of the intervals that were cut into pieces; key_times is empty if no interval was
-  // cut.
+  // faces. key_times has the ends of the intervals that were cut into pieces, and is empty if no interval was cut.
   [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
     if (has_skins()) {
       CutPath& cut = result_.cut.emplace();
@@ -614,14 +612,12 @@ class AnimationReader {
     return Success{};
   }
 
-  // Returns the weights of a part at a time.
   [[nodiscard]] std::vector<double> weights_of(std::size_t part, double time, bool just_before) const {
     std::vector<double> weights(reach_[part].size());
     curves_[curve_of_part_[part]].at(time, just_before, weights);
     return weights;
   }
 
-  // Returns the weights of all parts at a time, one list for each part.
   [[nodiscard]] std::vector<std::vector<double>> weights_at(double time, bool just_before) const {
     std::vector<std::vector<double>> weights;
     for (std::size_t p = 0; p < assembly_.parts().size(); ++p) weights.push_back(weights_of(p, time, just_before));

@@ -1,8 +1,8 @@
 /// Reads skins of glTF files: the transforms of their joints at any time, and the joints of each vertex. Private to io
 /// and workflow.
 ///
-///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. It maps a
-///                     vertex of the mesh that follows only this joint to its position (section 3.7.3.3 of the
+///     joint matrix the transform of the joint in the world, after the inverse bind matrix of the skin. The matrix maps
+///                     a vertex of the mesh that follows only this joint to its position (section 3.7.3.3 of the
 ///                     specification). The transform of the node with the skin does not matter.
 ///
 /// Opening a document does not check its skins, so that callers that do not need skins can read a file with an invalid
@@ -32,9 +32,9 @@ struct JointShare {
 
 /// Bounds of the motion of a bone, which is a joint or a node above a joint, over an interval of time in which no curve
 /// has a key. `size`, `speed` and `bend` bound the linear part of the bone's matrix in the world. `path_bend` bounds
-/// the second derivative of the offset of this matrix, as the sum of what each bone from the root to this bone adds. If
-/// the paths from the root to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how
-/// the joint bends relative to that bone.
+/// the second derivative of the offset of this matrix, as the sum of what each bone from the root to this bone adds.
+/// For a joint below a bone, the `path_bend` of the joint minus the `path_bend` of the bone therefore bounds the second
+/// derivative of the difference of the two offsets.
 struct BoneBounds {
   double size = 1, speed = 0, bend = 0;  ///< of its value, and of its first and second derivative in time
   double path_bend = 0;
@@ -64,7 +64,7 @@ class GltfSkin {
   [[nodiscard]] std::vector<double> key_times() const;
 
   /// Returns the joint matrices at a time in seconds. If joints jump at this time, the matrices are those just after
-  /// the jump, or just before it if just_before is set. O(joints and nodes above them).
+  /// the jump, or just before the jump if just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
   /// Returns true if joints jump in the animation.

@@ -70,7 +70,7 @@ double GltfSkinPieces::bend_of_edge(std::span<const BoneBounds> bones, std::span
       }
     }
   };
-  // The bone at which the paths to the root of all joints with different shares in p and q meet.
+  // The bone at which the paths to the root meet, for all joints whose shares in p and q differ.
   std::optional<std::size_t> meeting;
   bool is_first = true;
   each_joint([&](std::uint32_t joint, double of_p, double of_q) {

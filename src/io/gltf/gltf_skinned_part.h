@@ -2,8 +2,8 @@
 /// pieces the curved paths of the vertices must be cut. Private to io.
 ///
 /// A vertex is at the sum of w_j M_j p, for the joint matrices M_j = W_j B_j (io/gltf/gltf_skin.h), its shares w_j, and
-/// its position p before the skin, which morph targets move. For an edge from p to q, with shares v_j and w_j, this is
-/// the sum of
+/// its position p before the skin, which morph targets move. The skin moves an edge from p to q, with shares v_j and
+/// w_j, to the sum of
 ///
 ///     L_j y_j + o_j c_j        y_j = w_j B_j q - v_j B_j p,  c_j = w_j - v_j,  W_j = (L_j | o_j)
 ///

@@ -24,7 +24,7 @@ class WeightCurve {
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
 
   /// Writes the weights at a time. If the weights jump at this time, writes the weights just after the jump, or just
-  /// before it if just_before is set.
+  /// before the jump if just_before is set.
   void at(double time, bool just_before, std::span<double> weights) const noexcept;
 
   /// Writes a bound of the second derivative of every weight (in 1/s^2) between two times within the same key interval.

@@ -95,7 +95,7 @@ Motion cloth() {
   return connected(grid.topology(), std::move(keyframes));
 }
 
-// Makes a tube along y that bends. The bending keeps the length of its middle line.
+// Makes a tube along y that bends. The middle line of the tube keeps its length.
 Motion bend() {
   const Grid grid{149, 150, true};
   const auto tube = [&grid](double time, double bend_angle) {
@@ -111,7 +111,7 @@ Motion bend() {
   return connected(grid.topology(), {tube(0, 0), tube(1, kPi / 2)});
 }
 
-// Twists a column with a square cross-section, so that its sides are flat and its edges are sharp.
+// Makes a column that twists. Its square cross-section gives the column flat sides and sharp edges.
 Motion twist() {
   const Grid grid{100, 76, true};
   const auto column = [&grid](double time, double twist_angle) {

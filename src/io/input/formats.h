@@ -59,8 +59,8 @@ struct Format {
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
-  /// Finds the offsets at which a cache file stores its samples, which are the positions at one time each
-  /// (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
+  /// Finds the offsets at which a cache file stores its samples. Each sample has the positions at one time
+  /// (io/cache/cache_layout.h). The function is nullptr if samples cannot be read one by one.
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
@@ -74,7 +74,8 @@ struct Format {
 /// true.
 [[nodiscard]] std::span<const Format> formats() noexcept;
 
-/// Returns the format that has the extension of the file name, in upper or lower case, or nullptr if no format has it.
+/// Returns the format that has the extension of the file name, in upper or lower case, or nullptr if no format has this
+/// extension.
 [[nodiscard]] const Format* find_format(std::string_view file_name) noexcept;
 
 /// Returns the format of a file by its extension. If the extension is unknown or missing, as for the standard input,

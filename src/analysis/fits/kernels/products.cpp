@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Adds the products of kRows columns of `a`, from column i on, with the columns of `b` in one or two SIMD vectors, from
-// column j on, to `sums`.
+// Adds products of columns to `sums`: kRows columns of `a`, from column i on, times the columns of `b` in one or two
+// SIMD vectors, from column j on.
 template <std::size_t kRows, std::size_t kVectors>
 HWY_INLINE void AddTile(const StridedMatrix& a, const StridedMatrix& b, std::size_t i, std::size_t j, float* sums,
                         std::size_t stride) {

@@ -1,8 +1,8 @@
 /// Computes in lanes of double the reference normals of triangles at many times, and the angles between exact normals
 /// and other normals.
 ///
-/// Results have the same bits as those of the scalar functions. These are reference_normals() of analysis/quality.h,
-/// which returns the same directions with other lengths, and portable::atan2(|n x u|, n . u).
+/// Results have the same bits as those of the scalar functions: reference_normals() of analysis/quality.h, which
+/// returns the same directions with other lengths, and portable::atan2(|n x u|, n . u).
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 

@@ -84,7 +84,6 @@ void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::sp
 void errors_of_pairs(std::span<const Vec3d> rendered, std::span<const Vec3d> right, std::span<double> degrees,
                      std::span<Vec3f> differences) noexcept;
 
-/// Writes the length of each vector.
 void lengths_of(std::span<const Vec3d> vectors, std::span<double> lengths) noexcept;
 
 /// Replace each vector v by unit(v), or by unit(v) rounded to float.

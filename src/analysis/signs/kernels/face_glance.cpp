@@ -1,5 +1,5 @@
-// Decides in lanes of double which faces are unusual. The operations are the same as in is_far_from_collapse() and in
-// plain comparisons.
+// Decides in lanes of double which faces are not certainly usual (face_glance.h). The operations are the same as in
+// is_far_from_collapse() and in plain comparisons.
 #include "analysis/signs/kernels/face_glance.h"
 
 #undef HWY_TARGET_INCLUDE

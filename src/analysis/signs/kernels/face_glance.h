@@ -1,5 +1,5 @@
-/// Proves for sixteen faces at a time, with little work, that nothing unusual happens to them between two keyframes.
-/// The proof succeeds for almost all faces.
+/// Proves for sixteen faces at a time, with little work, that the normals of the faces are long at both keyframes, turn
+/// little, and do not nearly vanish in between. The proof succeeds for almost all faces.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 
@@ -10,8 +10,8 @@
 namespace chronormal::inline internal {
 
 struct GlanceLimits {
-  /// The shortest length of a normal at each end, divided by the length of the longest edge. A length below 0 means
-  /// that this end is not judged.
+  /// The length that a normal must exceed at each end, divided by the length of the longest edge. A number below 0
+  /// means that the length at this end is not judged.
   double length_from = 0, length_to = 0;
   /// The square of the cosine of an angle between 0 and 90 degrees. The normals of a face at both ends must differ by
   /// less than this angle.

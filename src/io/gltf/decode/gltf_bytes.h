@@ -65,8 +65,8 @@ class Bytes {
   /// their value. Errors: those of buffer(); numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
-  /// Returns the numbers of an accessor as times of keys in seconds. Errors: also times that do not ascend, or begin
-  /// below 0.
+  /// Returns the numbers of an accessor as times of keys in seconds. Errors: those of floats(); times that do not
+  /// ascend, or begin below 0.
   [[nodiscard]] Result<std::vector<float>> times(std::size_t accessor);
 
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.

@@ -15,8 +15,8 @@ template <class T>
 void decode_element(char* element) noexcept {
   constexpr std::endian kOrder = std::endian::little;
   const auto load = [&](std::size_t i) { return static_cast<float>(binary::load<T>(element + i * sizeof(T), kOrder)); };
-  // Each line rounds only once in float, and the lines have the order of the decoder in browsers, so that all bits of
-  // the result agree with those in browsers.
+  // Each operation is rounded to float on its own, and the operations have the order of the decoder in browsers, so
+  // that all bits of the result agree with those in browsers.
   float x = load(0), y = load(1);
   const float z = load(2) - (std::fabs(x) + std::fabs(y));
 

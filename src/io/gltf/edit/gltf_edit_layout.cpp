@@ -169,8 +169,8 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that become unused by the changes, in the buffers for which holds(buffer) is true. The bytes of such
-// buffers are in the result.
+// Finds the arrays that nothing uses after the changes, in the buffers for which holds(buffer) is true. The bytes of
+// such buffers are in the result.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};
@@ -270,8 +270,8 @@ Status EditLayout::move_buffers() {
     const std::string pointer = item_pointer("bufferViews", i);
     const auto offset = unused_.any() ? std::optional(unused_.view_offsets[i]) : std::nullopt;
     if (Status status = move_view(pointer, moved, offset); !status) return status;
-    // EXT_meshopt_compression and its successors name the buffer of the compressed bytes, so their objects must be
-    // changed too.
+    // EXT_meshopt_compression and its successors name the buffer of the compressed bytes in their JSON objects, so
+    // these objects must be changed too.
     for (const JsonMember& extension : document_.source.members(pointer + "/extensions")) {
       if (!extension.value.starts_with('{')) continue;
       const std::string of_extension = with_json_token(pointer + "/extensions", extension.name);

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Accessor 0 and buffer view 0 belong to the triangles. The other arrays come after them.
+// Accessor 0 and buffer view 0 belong to the triangles. The accessors and the buffer views of other arrays follow.
 constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 }  // namespace

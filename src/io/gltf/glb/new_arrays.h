@@ -23,9 +23,9 @@ namespace chronormal::inline internal::gltf {
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
-/// A store of new arrays, in which arrays of one kind share a buffer view. The kinds are vectors, whose view has the
-/// target ARRAY_BUFFER (section 3.6.2.4 of the specification), scalars, and the indices and the values of sparse
-/// accessors, whose views must not have a target.
+/// A store of new arrays, in which arrays of one kind share a buffer view. The kinds are vectors, scalars, and the
+/// indices and values of sparse accessors. Only the view of vectors has a target, ARRAY_BUFFER (section 3.6.2.4 of the
+/// specification).
 class NewArrays {
  public:
   /// Creates an empty store that keeps the bytes of its arrays in `spool`.
@@ -77,7 +77,7 @@ class NewArrays {
 
     bool operator==(const Array&) const = default;
   };
-  // The bytes of an array in its parts, each of which is padded to a multiple of 4.
+  // The bytes of an array, in parts that are each padded to a multiple of 4 bytes.
   struct Encoded {
     Array array;
     // the values if they are stored dense; a view of `swapped` on machines that are big endian

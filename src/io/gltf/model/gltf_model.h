@@ -1,9 +1,9 @@
 /// The JSON of a glTF file as structs whose references have been checked, so that readers of the bytes can rely on
 /// them. Private to io.
 ///
-/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h. This half has the places of their
-/// arrays. A buffer view is checked against its buffer. An accessor that a primitive or a sampler names is checked
-/// against its buffer view; other accessors only have to be well-formed.
+/// The public half of the structs (meshes, nodes, animations) is in chronormal/io/gltf_document.h. This half has the
+/// places of the arrays. A buffer view is checked against its buffer. An accessor that a primitive or a sampler names
+/// is checked against its buffer view; other accessors only have to be well-formed.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 
@@ -166,10 +166,8 @@ struct Model {
 
 /// Returns the transform of a node relative to its parent, as the file gives it, without animation. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
-/// Returns the affine transform that a placement describes.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
 
-/// Returns the JSON pointer of a primitive.
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
 /// Parses a document, whose JSON begins at byte `offset` of the file. file_bytes is the size of the file, which limits

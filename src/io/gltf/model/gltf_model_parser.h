@@ -97,7 +97,7 @@ class Parser {
   /// Gives each mesh without a mark of a bake the mark of a node that carries the mesh, or of the parent of such a
   /// node.
   void read_marks_of_nodes();
-  /// Returns the member "weights" of a mesh or node, or nothing if there is none.
+  /// Returns the member "weights" of a mesh or node, or an empty list if the member is missing.
   static std::vector<double> parse_weights(const JsonView& item);
   void check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count);
 
