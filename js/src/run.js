@@ -49,7 +49,7 @@ class Sink {
   }
   put(byte) {
     this.bytes[this.count++] = byte;
-    // 10 is the line feed; 37 is "%", which ends a progress bar
+    // Byte 10 is a line feed, and byte 37 is the "%" that ends a progress bar.
     if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush();
   }
   flush() {

@@ -149,7 +149,7 @@ export interface SampleOptions extends MotionOptions {
   hardEdges?: 'groups' | 'normals';
   noWeld?: boolean;
   weighting?: Weighting;
-  /** The length of each normal. 'area' is twice the area of a triangle. Default: 'unit'. */
+  /** The length of each normal: 1 for 'unit', and twice the area of a triangle for 'area'. Default: 'unit'. */
   length?: 'unit' | 'area';
 }
 

@@ -74,7 +74,7 @@ class CrossSum {
     ++terms_;
   }
 
-  /// Returns the sum of the absolute products, for each component.
+  /// Returns the sum of the absolute values of the products, for each component.
   [[nodiscard]] const Vec3d& magnitude() const noexcept { return magnitude_; }
 
   [[nodiscard]] Vec3d without_rounding() const noexcept {

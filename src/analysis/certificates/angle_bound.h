@@ -25,7 +25,7 @@ namespace chronormal::inline internal {
 /// The vector p(t) that a scheme makes on a piece of a segment, before the vector is scaled to length 1.
 struct CurvePiece {
   Bernstein<Vec3d, 3> p;
-  /// Bound of the distance between the rendered vector and p(t), at any t of the piece.
+  /// A bound of the distance between the rendered vector and p(t), at any t of the piece.
   double radius = 0;
   Vec3d middle;              ///< a vector near the rendered vector at the middle of the piece
   double middle_radius = 0;  ///< bound of the distance between `middle` and the rendered vector at the middle

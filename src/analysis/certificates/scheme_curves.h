@@ -63,8 +63,8 @@ class SumCurve {
   double radius_ = 0;
 };
 
-/// Great arcs and other circular arcs. If an arc reaches its middle at another time than 1/2, its last coefficient is
-/// the share of time before its middle. Such an arc runs in warped time; see warped_normal().
+/// Great arcs and other circular arcs. For an arc that reaches its middle at another time than 1/2, the last
+/// coefficient is the share of the time before the middle. Such an arc runs in warped time; see warped_normal().
 class ArcCurve {
  public:
   /// Takes the coefficients w, p, q, A of one of the formulas kGreatArc, kCircleArc and kTimedCircleArc, in their

@@ -185,8 +185,8 @@ class ScaleSearch {
   }
 
  private:
-  // The polynomials in s that give the angle at one w: the component of (line x u) along the pole, the cosine, and the
-  // squared length of the line. `height` is the height of u above the plane of the great circle.
+  // The coefficients of the polynomials in s that give the angle at one w: the component of (line x u) along the pole,
+  // the cosine, and the squared length of the line. `height` is the height of u above the plane of the great circle.
   struct Term {
     double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
   };
@@ -319,8 +319,8 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   double best_scale = 1;
   ScaleSearch search(u0, u1);
   constexpr int kExchanges = 6;
-  // The smallest ratio of two errors that counts as a gain, and the largest error that counts as exact, both as keys. A
-  // key is about the square of the angle, so in angles the gain is half as much.
+  // The smallest ratio of two errors that counts as a gain, and the largest error that counts as exact, both as keys
+  // (angle_of_key()). A key is about the square of the angle, so in angles the gain is half as much.
   constexpr double kGain = 1 + 1e-3, kExact = 1e-24;
   for (int round = 0; round <= kExchanges; ++round) {
     const double s = portable::exp(log_scale);

@@ -21,11 +21,11 @@ struct EndDelta {
   double error = 0;
 };
 
-/// Finds the best delta s u1 - u0 of one element, with the unit normals u0 and u1 at the two ends. Its error is within
-/// 1e-3 of the smallest possible error, and is never larger than that of s = 1. If n0 or n1 is zero, its limit
-/// direction is used (control_normals.h). If all control normals are zero, the delta is zero. If u1 = u0, the direction
-/// of the line does not depend on s; if u1 = -u0, every s has large errors. In both cases the result is s = 1 with its
-/// error. Cost: about 5 microseconds.
+/// Finds the best delta s u1 - u0 of one element, with the unit normals u0 and u1 at the two ends. The error of this
+/// delta is within 1e-3 of the smallest possible error, and is never larger than that of s = 1. If n0 or n1 is zero,
+/// its limit direction is used (control_normals.h). If all control normals are zero, the delta is zero. If u1 = u0, the
+/// direction of the line does not depend on s; if u1 = -u0, every s has large errors. In both cases the result is s = 1
+/// with its error. Cost: about 5 microseconds.
 [[nodiscard]] EndDelta best_end_delta(const ControlNormals& normals) noexcept;
 
 /// Returns the largest angle over w in [0, 1] between from + w (to - from) and n(w), in radians, with a relative error

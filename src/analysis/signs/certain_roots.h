@@ -29,7 +29,7 @@ class CertainRoots {
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
-    // A halving adds three roundings to a coefficient, and an evaluation nine.
+    // A halving adds three roundings to a coefficient, and an evaluation adds nine.
     constexpr double kRoundings = 3 * kMostHalvings + 16;
     return CertainRoots(error + kRoundings * kUnitRoundoff * size, found).settle(p, 0, 1, kMostHalvings);
   }
@@ -42,7 +42,7 @@ class CertainRoots {
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
   // Finds the roots in the part of [0, 1] that begins at t0 and is `width` wide. p has the Bernstein coefficients over
-  // this part. Returns false if the number of roots is not certain.
+  // this part. Returns false if the roots are not certain.
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {

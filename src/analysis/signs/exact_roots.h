@@ -50,7 +50,7 @@ template <std::size_t N, std::size_t kDigits>
 struct IntegerPolynomial {
   std::array<WideInteger<kDigits>, N + 1> a;
 
-  /// Returns the number of coefficients up to the last nonzero one.
+  /// Returns the number of coefficients up to the last nonzero coefficient.
   [[nodiscard]] std::size_t terms() const noexcept {
     std::size_t count = N + 1;
     while (count > 0 && a[count - 1].sign() == 0) --count;

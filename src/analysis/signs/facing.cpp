@@ -87,8 +87,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   }
 }
 
-// Returns the sides of a face that may be seen while the shutter is open, from the coefficients of the first stage
-// alone. Returns no value if the coefficients are not precise enough.
+// Returns the sides of a face that the viewer may see while the shutter is open, from the coefficients of the first
+// stage alone. Returns no value if the coefficients are not precise enough.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);

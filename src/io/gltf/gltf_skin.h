@@ -74,8 +74,8 @@ class GltfSkin {
   /// for a cubic rotation that may have no direction. O(bones + curves).
   [[nodiscard]] std::vector<BoneBounds> bounds(double from, double to) const;
 
-  /// Return the bone of a joint; the bone at which the paths of two bones to their roots meet, or nothing if the roots
-  /// differ; and the inverse bind matrix of a joint.
+  /// bone_of_joint() returns the bone of a joint. meeting_bone() returns the bone at which the paths of two bones to
+  /// their roots meet, or nothing if the roots differ. inverse_bind() returns the inverse bind matrix of a joint.
   [[nodiscard]] std::size_t bone_of_joint(std::size_t joint) const noexcept { return bone_of_joint_[joint]; }
   [[nodiscard]] std::optional<std::size_t> meeting_bone(std::size_t a, std::size_t b) const noexcept;
   [[nodiscard]] const AffineTransform& inverse_bind(std::size_t joint) const noexcept { return inverse_binds_[joint]; }

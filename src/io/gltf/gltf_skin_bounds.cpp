@@ -17,7 +17,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Bounds of a curve, of its first and of its second derivative.
+// Bounds of the length of a curve's value, of its first derivative and of its second derivative.
 struct Bound {
   double size = 0, speed = 0, bend = 0;
 };

@@ -33,7 +33,7 @@ class TrianglesInMotion {
 
  private:
   std::size_t count_ = 0;
-  // The positions of the corners at both ends: 18 values per triangle, in groups of eight triangles.
+  // The positions of the corners at both keyframes: 18 values per triangle, in groups of eight triangles.
   std::vector<float> positions_;
 };
 

@@ -42,7 +42,7 @@ struct Origin {
   Expansion expansion;        ///< limit of memory that the asset itself may ask for
   FileResolver resolve = {};  ///< finds the asset's files; if empty, they are in the file system
 
-  /// Returns the path of a relative URI (io/gltf/gltf_uri.h); `place` is for messages.
+  /// Returns the path of a relative URI (io/gltf/model/gltf_uri.h); `place` is for messages.
   [[nodiscard]] Result<std::string> path_of(std::string_view uri, const std::string& place) const;
   /// Opens the file at a path that path_of() returned; `place` is for messages.
   [[nodiscard]] Result<FileBytes> open(const std::string& path, const std::string& place) const;

@@ -90,8 +90,8 @@ class References {
   std::vector<bool> referred_;
 };
 
-// A part of a view that an accessor reads. A sparse accessor reads up to three parts: its base values, its indices, and
-// the values that replace some of the base values.
+// A part of a buffer view that an accessor reads. A sparse accessor reads up to three parts: its base values, its
+// indices, and the values that replace some of the base values.
 struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };

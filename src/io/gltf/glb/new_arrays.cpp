@@ -90,7 +90,7 @@ ArraySurvey survey_array(std::span<const float> values, std::size_t components) 
 std::string bound_json(std::span<const float> bounds) {
   std::string json = "[";
   for (std::size_t c = 0; c < bounds.size(); ++c)
-    // Writes 0 instead of -0.
+    // A bound of -0 is written as 0, which is equal.
     json.append(c > 0 ? "," : "").append(json_number(bounds[c] == 0 ? 0.0 : double{bounds[c]}));
   return json + "]";
 }

@@ -25,8 +25,8 @@ namespace chronormal::inline internal {
 
 /// Returns the path of the file to which a relative URI refers. `folder` is the folder of the asset, or has no value
 /// for the standard input. Errors: kInvalidInput at `place` for a URI that does not name a file or that names a device,
-/// and for a malformed percent code. Unless allow_external is true, also for an absolute path, another scheme, and
-/// everything outside the folder.
+/// and for a malformed percent code. Unless allow_external is true, an absolute path, another scheme, and everything
+/// outside the folder are also errors.
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
