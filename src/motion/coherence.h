@@ -39,7 +39,8 @@ class SmallSet {
 /// near the core.
 inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 
-/// The largest result of lines_per_face() for which the caches and their prefetchers need no help.
+/// The largest result of lines_per_face() at which vertices are read without prefetching, because their order already
+/// suits the caches.
 inline constexpr double kMostLinesPerFace = 1;
 
 /// Returns the number of cache lines of packed positions that a face reads and that the faces before it did not read,

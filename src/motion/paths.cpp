@@ -151,8 +151,8 @@ class PieceBounds {
   double sine_;
 };
 
-// A source of the keyframes at the ends of straight pieces. The source computes them from the keyframes of the original
-// stream, which are read when they are needed.
+// A source of the keyframes at the ends of straight pieces. The positions of these keyframes are computed from the
+// keyframes of the original stream, which are read when they are needed.
 struct Cutter {
   MotionStream source;
   PathKind kind;

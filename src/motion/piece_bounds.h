@@ -2,8 +2,8 @@
 /// normals of the pieces and those of the curves. Private to motion and io.
 ///
 /// Let e and f be edges of a face over one piece, on the chords, and let the edges on the curves differ from them by p
-/// and q times s (1 - s), where s runs from 0 to 1. So the normal of the curve differs from the normal n of the chords
-/// by
+/// and q times s (1 - s), where s runs from 0 to 1. Then the normal on the curves differs from the normal n on the
+/// chords by
 ///
 ///     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                         (1)
 ///

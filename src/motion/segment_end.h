@@ -57,7 +57,7 @@ class SegmentEnd {
       left = left - to_double(part);
     }
   }
-  // One float for the position, and three floats of 24 bits for a residual of 53 bits.
+  // A position takes one float, and a residual of 53 bits takes up to three floats of 24 bits.
   static constexpr std::size_t kMostParts = 4;
 
   [[nodiscard]] Vec3d residual(std::size_t vertex) const noexcept {

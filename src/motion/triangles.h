@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kMostClipped = 1U << 11;
 
 /// Returns the triangles of all faces as vertices, (triangles, 3). `positions` belong to the topology's vertices. The
-/// vertices in the result come from vertex_of_corner, which has one for each corner of the topology and may number
+/// vertices in the result come from vertex_of_corner, which has a vertex for each corner of the topology and may number
 /// vertices differently.
 [[nodiscard]] std::vector<std::uint32_t> cut_polygons(const Topology& topology, std::span<const float> positions,
                                                       std::span<const std::uint32_t> vertex_of_corner);

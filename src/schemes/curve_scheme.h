@@ -5,7 +5,7 @@
 ///
 ///     std::size_t plane_count() const                    how many floats an element keeps
 ///     Formula formula() const                            what is evaluated
-///     void fit(ElementMotion& element, double* c) const  fills them; calls element.use_fallback() where undefined
+///     void fit(ElementMotion& element, double* c) const  fills c; calls element.use_fallback() where undefined
 ///
 /// and if the formula is a sum, or takes anything but its shared_values(),
 ///

@@ -21,7 +21,6 @@ struct ElementCoefficients {
   [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
 };
 
-/// Returns the coefficients of element i.
 [[nodiscard]] inline ElementCoefficients coefficients_of(const CoefficientBlocks& blocks, std::size_t i) noexcept {
   return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
 }

@@ -66,8 +66,8 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
   const double square = dot(e0, e0);
   if (square == 0) return std::nullopt;
 
-  // binormal0 = normal0 x tangent0 is f0 without its part along e0, so M maps it to f1 minus the same multiple of e1.
-  // The paper prints tangent1 = n1 x b1, which would give a left-handed frame with b = n x t.
+  // binormal0 = normal0 x tangent0 is f0 without its part along e0, so M maps binormal0 to f1 minus the same multiple
+  // of e1. The paper prints tangent1 = n1 x b1, which would give a left-handed frame with b = n x t.
   const Vec3d binormal = unit(within_plane(f1 - (dot(e0, f0) / square) * e1, element.end().vector));
   if (binormal == Vec3d{}) return std::nullopt;
   const Vec3d& u1 = element.end().vector;

@@ -1,5 +1,4 @@
-// The scheme slerp. It takes the shortest arc from u0 to u1 at constant speed (section 2.3 of the paper, eq. 5 of the
-// paper).
+// The scheme slerp. It takes the shortest arc from u0 to u1 at constant speed (section 2.3 and eq. 5 of the paper).
 //
 // Let q be the unit vector perpendicular to u0 in the plane of u0 and u1, and T the angle between u0 and u1. Then u(t)
 // = cos(t T) u0 + sin(t T) q is the same curve as (sin((1-t) T) u0 + sin(t T) u1) / sin T, but without the division

@@ -56,7 +56,7 @@ class WeightBasis {
 
  private:
   // Makes a basis whose weights may be the result of cancellation. largest_sum is the largest sum of |coefficients| of
-  // all weights at one place, before anything cancels.
+  // all weights at one index, before anything cancels.
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
 
   std::size_t degree_;

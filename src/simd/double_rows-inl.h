@@ -55,7 +55,6 @@ HWY_INLINE void StoreDoubleRow(const DoubleRow& row, double* to) {
 HWY_INLINE DoubleRow operator+(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Add(a.parts[i], b.parts[i]); });
 }
-// Returns the product of two rows, component by component.
 HWY_INLINE DoubleRow operator*(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Mul(a.parts[i], b.parts[i]); });
 }

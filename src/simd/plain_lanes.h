@@ -220,8 +220,6 @@ constexpr std::size_t Lanes(D) {
   return D::kLanes;
 }
 
-// ---- memory
-
 template <class D>
 HWY_INLINE Vec<D> LoadU(D, const typename D::Lane* from) {
   Vec<D> v;
@@ -268,8 +266,6 @@ template <class T, std::size_t kCount>
 HWY_INLINE T GetLane(const Vector<T, kCount>& v) {
   return v.raw[0];
 }
-
-// ---- bits
 
 template <class To, class From>
 HWY_INLINE To SameBits(const From& from) {
@@ -320,8 +316,6 @@ template <int kBits, class T, std::size_t kCount>
 HWY_INLINE Vector<T, kCount> ShiftRight(const Vector<T, kCount>& a) {
   return {a.raw >> kBits};
 }
-
-// ---- numbers
 
 #define CHRONORMAL_PLAIN_ARITHMETIC(Name, symbol)                                             \
   template <class T, std::size_t kCount>                                                      \
@@ -394,8 +388,6 @@ HWY_INLINE MaskOf<T, kCount> TestBit(const Vector<T, kCount>& a, const Vector<T,
   return Ne(And(a, bit), Zero(Simd<T, kCount>()));
 }
 
-// ---- masks
-
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> VecFromMask(D, const MaskOf<T, kCount>& mask) {
   return SameBits<Vec<D>>(mask);
@@ -466,8 +458,6 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t count) {
   return mask;
 }
 
-// ---- other types
-
 // Convert numbers to another type. Floats become integers by rounding towards zero.
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> ConvertTo(D, const Vector<T, kCount>& v) {
@@ -498,8 +488,6 @@ HWY_INLINE Vector<std::int32_t, 4> RearrangeToOddPlusEven(const Vector<std::int3
                                                           const Vector<std::int32_t, 4>&) {
   return sum;
 }
-
-// ---- lanes in other places
 
 // Returns the lanes with the numbers kFrom... The numbers count through the lanes of a and then through the lanes of b.
 template <class D, std::size_t kCount, std::size_t... kFrom>

@@ -7,7 +7,7 @@
 //     select(mask, a, b)      a where the mask holds, b elsewhere
 //     absolute(a), larger_of(a, b), smaller_of(a, b)
 //     has_low_bit(s)          a mask: whether the lowest bit of the representation of s is set
-//     negated_by_bit_1(s, v)  v, its sign changed where the second lowest bit of s is set
+//     negated_by_bit_1(s, v)  v with its sign changed where the second lowest bit of s is set
 //     next_bits(s)            the representation plus one, as if it were an integer
 
 #include "simd/highway-inl.h"

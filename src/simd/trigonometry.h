@@ -2,7 +2,7 @@
 ///
 /// The results of the standard library differ from machine to machine in the last bit. The functions here give the same
 /// bits everywhere and have no branch. src/simd/trigonometry-inl.h has the same formulas for vectors of lanes, with the
-/// same bits. The polynomials interpolate the functions at Chebyshev nodes (own fit).
+/// same bits. The polynomials were fitted for this project, by interpolation at Chebyshev nodes.
 #ifndef CHRONORMAL_SIMD_TRIGONOMETRY_H_
 #define CHRONORMAL_SIMD_TRIGONOMETRY_H_
 

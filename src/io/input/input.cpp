@@ -147,7 +147,7 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
 }
 
 // Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream reads the file
-// through a descriptor of its own, and maps nothing.
+// through its own descriptor, and does not map the file into memory.
 Result<MotionStream> stream_samples(const InputOptions& options, Motion outline, PositionedFile file,
                                     CacheLayout layout, const std::string& name) {
   std::vector<std::size_t> frames(outline.keyframes.size());
@@ -411,7 +411,6 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
   return Success{};
 }
 
-// Opens an input that is a single file.
 Result<Opened> open_whole(const std::string& path, const InputOptions& options) {
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();

@@ -130,8 +130,8 @@ Origin far_origin_of_file(std::span<const float> positions) {
   return origin == Origin{} ? Origin{positions[0], positions[1], positions[2]} : origin;
 }
 
-// Reads a mesh and subtracts wanted.origin, which was found from float32 positions. While the mesh is still far from
-// this origin, moves the origin closer to the mesh and reads the mesh again.
+// Reads a mesh and subtracts wanted.origin, which is at first only as exact as float32. As long as the resulting
+// positions are far from (0, 0, 0), moves wanted.origin closer to the mesh and reads the mesh again.
 Result<MeshFrame> read_around(std::string_view bytes, const std::string& file_name, const std::string& place,
                               WantedOfMesh& wanted) {
   constexpr int kMost = 4;  // float32 finds 24 bits of an origin at a time, and a double has 53
@@ -273,7 +273,7 @@ double closing_time(std::span<const double> times, std::span<const std::size_t> 
 
 namespace {
 
-// Sets the velocities at both ends of a loop to the velocities of the closed curve there.
+// Sets the velocities at both ends of a loop to the velocities that the vertices have there on the closed curve.
 Status set_loop_velocities(const InputOptions& options, std::size_t count,
                            const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   const Result<std::vector<std::size_t>> frames = choose_frames(count, options);
@@ -284,8 +284,8 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    // The first keyframe needed comes kBeside keyframes before the start of the loop. Adding kBeside rounds of the loop
-    // keeps the index `at` from being negative.
+    // The velocities need the kBeside keyframes before the start of the loop. Adding kBeside rounds of the loop keeps
+    // the index `at` from being negative.
     const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);
@@ -311,8 +311,8 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // Every N-th keyframe was chosen. The velocities at the ends are computed from the longer sequence that takes every
-  // N-th keyframe from the beginning to the end of the files.
+  // Every N-th keyframe was chosen, where N is options.every. The velocities at the ends are computed from the longer
+  // sequence that takes every N-th keyframe from the beginning to the end of the files.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

@@ -1,5 +1,5 @@
-/// Identifies the files of an input by their names, sizes and modification times. A run uses them to tell, without
-/// reading the files, whether an input is the one of an earlier run and has not changed. Private to io and the program.
+/// Identifies the files of an input by their names, sizes and modification times. A run compares them with those of an
+/// earlier run, and thus knows without reading the files if its input has changed. Private to io and the program.
 #ifndef CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 #define CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 

@@ -250,7 +250,8 @@ class Names {
     return true;
   }
 
-  // Takes a minus before a number as its sign if the set also has the same name without the minus.
+  // Takes a minus before a number as its sign if another name has the same texts around its numbers, but no minus
+  // there.
   void take_signs() {
     std::set<std::vector<std::string>> texts;
     for (const Cut& cut : cuts_) texts.insert(cut.texts);

@@ -2,10 +2,10 @@
 /// Private to io.
 ///
 /// A number has digits and may have a fraction: t_0.05. A minus before the digits is a sign at the start of a name,
-/// after a blank, or if the set also has the same name without the minus. The names frame-001 to frame-100 thus have
-/// positive numbers. A number has an exponent only if all names have one at that place: t_1e-05. A point between two
-/// numbers is not a decimal point if a version is before it (v2.0001, 001.0001), or if the digits after it cannot be a
-/// fraction that a program printed (1.9, 1.10).
+/// after a blank, or if another name has the same texts around its numbers, but no minus there. The names frame-001 to
+/// frame-100 thus have positive numbers. A number has an exponent only if all names have one at that place: t_1e-05. A
+/// point between two numbers is not a decimal point if a version is before it (v2.0001, 001.0001), or if the digits
+/// after it cannot be a fraction that a program printed (1.9, 1.10).
 #ifndef CHRONORMAL_IO_INPUT_NUMBERING_H_
 #define CHRONORMAL_IO_INPUT_NUMBERING_H_
 

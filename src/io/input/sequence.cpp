@@ -229,8 +229,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // The text of the faces is compared instead of being parsed, but only if the normals of the file are not needed and
-  // no origin is subtracted from positions.
+  // The text of the faces is compared with that of the first file instead of being parsed, but only if the normals of
+  // the file are not needed and no origin is subtracted from positions.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {

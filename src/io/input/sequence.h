@@ -22,13 +22,13 @@ namespace chronormal::inline internal {
 /// (motion/motion.h).
 ///
 /// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate if
-/// the names give times in seconds; those of opening files and of the readers, with the frame in the place ("frame 3
-/// (walk_3.obj), line 17"); kInvalidInput for fewer than two files, and if the number of vertices or the faces differ
+/// the names give times in seconds; the errors of opening files and of the readers, with the frame in the place ("frame
+/// 3 (walk_3.obj), line 17"); kInvalidInput for fewer than two files, and if the number of vertices or the faces differ
 /// from frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 /// Reads a sequence like read_sequence(), but as a stream. The files of keyframes after the first are read when they
-/// are needed, and their errors are reported then. All files are read at once if they are small
+/// are needed, and their errors are reported then. All files are read immediately if they are small
 /// (InputOptions::kept_bytes), if one of them is not a regular file, or if the options keep the normals of all
 /// keyframes and the first file has normals.
 [[nodiscard]] Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options);

@@ -107,7 +107,7 @@ Scan scan_json(std::string_view text) {
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` has these
-  // numbers. The builder recognises the place of each by the number of nulls before it.
+  // numbers. The builder finds the place of each number by counting the nulls before it.
   TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
       : items_(items), infinities_(infinities) {}
 

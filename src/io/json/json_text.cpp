@@ -12,8 +12,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-// The largest number of blanks that are copied from before a sibling to before an added value. Without a limit, a file
-// with a megabyte of blanks would grow by a megabyte for every added value.
+// The largest number of blanks before an added value, which gets the same blanks as its sibling. Without a limit, a
+// file with a megabyte of blanks would grow by a megabyte for every added value.
 constexpr std::size_t kMostBlanks = 256;
 
 std::size_t skip_blanks(std::string_view text, std::size_t at) {
@@ -344,7 +344,7 @@ void JsonText::add_pieces(const Node& node, std::vector<std::string_view>& resul
 }
 
 std::vector<std::string_view> JsonText::pieces() const {
-  // The root itself may have been replaced. Of the old text, only the blanks around the root are then kept.
+  // The root itself may have been replaced. Only the blanks around the root are then kept of the old text.
   std::vector<std::string_view> result;
   const std::size_t begin = skip_blanks(text_, text_.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
   result.push_back(text_.substr(0, begin));

@@ -99,7 +99,6 @@ class JsonText {
   std::deque<std::string> kept_;  // texts of changes; their addresses do not change
 };
 
-/// Joins the pieces of a text into one string.
 [[nodiscard]] std::string join(const std::vector<std::string_view>& pieces);
 
 }  // namespace chronormal::inline internal

@@ -19,8 +19,7 @@ struct MeshFrame {
   /// of formats leave this list empty; read_mesh_from() fills it.
   std::vector<double> residuals = {};
 
-  /// True if the caller's origin was subtracted from positions, and this kept digits that float32 would have lost
-  /// otherwise.
+  /// True if subtracting the caller's origin from the positions kept digits that float32 would otherwise have lost.
   bool has_more_digits = false;
   /// Sentences for the user, one for each kind of data in the file that the reader left out.
   std::vector<std::string> notes = {};

@@ -26,9 +26,9 @@ using ply::Property;
 using ply::Role;
 using ply::Scalar;
 
-// A source of the values of an ascii file. There is a source for each encoding, which returns the values behind the
-// header in order. The functions of a source return false if a value is missing or malformed; message() and place()
-// then describe the error and its place.
+// A source of the values of an ascii file. A source returns the values behind the header in order, and each encoding
+// has a class of its own for this. The functions of a source return false if a value is missing or malformed; message()
+// and place() then describe the error and its place.
 
 class AsciiSource {
  public:
@@ -392,7 +392,7 @@ Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, con
   return BodyReader<BinarySource>(bytes, name, header, has_velocities, origin).read();
 }
 
-// A writer of the numbers of a file in order, in one of the encodings.
+// Appends the numbers of a file one after the other, in one of the encodings.
 class RowWriter {
  public:
   RowWriter(std::string& bytes, PlyEncoding encoding)

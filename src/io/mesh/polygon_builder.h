@@ -34,7 +34,6 @@ class PolygonBuilder {
   /// Returns the number of finished faces, which is the index of the face that is being built.
   [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
 
-  /// Discards the face that is being built.
   void drop_face() { corners_.resize(face_begin_); }
 
   void end_face() {

@@ -98,7 +98,7 @@ void never_wait(int descriptor) noexcept;
 /// Reads a file from byte `at` on, until `bytes` is full or the file ends. Returns the part of `bytes` that was not
 /// filled.
 [[nodiscard]] std::optional<std::span<char>> read_at(int descriptor, std::uint64_t at, std::span<char> bytes);
-/// Writes all bytes to a file from byte `at` on. This may move the place at which write_bytes() writes next.
+/// Writes all bytes to a file from byte `at` on. The call may move the place at which write_bytes() writes next.
 [[nodiscard]] bool write_at(int descriptor, std::uint64_t at, std::string_view bytes);
 /// Makes a file `size` bytes long. The next call of write_bytes() then appends to the file.
 [[nodiscard]] bool set_end(int descriptor, std::uint64_t size);

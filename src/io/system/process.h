@@ -1,4 +1,4 @@
-/// Prepares the standard streams of a process, and calls functions of the program when something ends it.
+/// Prepares the standard streams of a process, and calls functions of the program when something ends the process.
 /// cli/terminal/process.h decides what these functions do. Private to the program.
 #ifndef CHRONORMAL_IO_SYSTEM_PROCESS_H_
 #define CHRONORMAL_IO_SYSTEM_PROCESS_H_

@@ -1,6 +1,6 @@
-// Keeps a list with a place for every temporary file that exists at the same time. A name is taken out of the list
-// either by its TemporaryFile, when it is done with the file, or by remove_temporaries(). From then on, only the
-// function that took the name may use it. remove_temporaries() never puts a name back.
+// Keeps a list of the names of all temporary files that exist. A name is taken out of the list either by its
+// TemporaryFile, when it is done with the file, or by remove_temporaries(). From then on, only the function that took
+// the name may use it. remove_temporaries() never puts a name back.
 #include "io/system/temporary_file.h"
 
 #include <array>
@@ -28,7 +28,6 @@ std::array<std::atomic<char*>, kMostFiles>
 static_assert(std::atomic<char*>::is_always_lock_free,
               "a signal handler must not wait for a lock, so this type must be lock-free");
 
-// Returns 16 random hexadecimal digits.
 std::string random_digits() {
   std::uint64_t number = random_number();
   std::string digits;

@@ -51,17 +51,17 @@ enum class BlendPath {
 };
 
 struct BlendNormalsOptions {
-  /// The limit of BlendCost::bytes. It does not apply to least_bytes, the memory that is needed even if no terms are
-  /// stored. The terms of many dense targets take more than the default, but then another path than kTerms is usually
-  /// cheaper.
+  /// The limit of BlendCost::bytes. The limit does not apply to least_bytes, the memory that is needed even if no terms
+  /// are stored. The terms of many dense targets take more than the default, but then another path than kTerms is
+  /// usually cheaper.
   std::size_t max_bytes = std::size_t{1} << 30;
   /// The path that is always taken, whatever its cost.
   std::optional<BlendPath> forced = {};
   /// True to blend positions and compute normals in float32 on the path kWhole, like FloatRecompute. This takes about
   /// half as long, so kWhole is chosen more often. There is then no guarantee for the normals of this path: positions
   /// have an error of a unit in the last place, which turns a normal by the ratio of that unit to the length of an
-  /// edge. This is enough for shading. The other paths stay exact. The option has no effect if an element has a ring of
-  /// more than 64 points.
+  /// edge. This accuracy is enough for shading. The other paths stay exact. The option has no effect if an element has
+  /// a ring of more than 64 points.
   bool in_float32 = false;
 };
 
@@ -88,8 +88,8 @@ struct BlendChoice {
   BlendPath path = BlendPath::kTerms;
   std::size_t active_targets = 0;    ///< number of targets with nonzero weights
   std::size_t touched_elements = 0;  ///< number of elements with a face that an active target moves
-  /// The number of touched elements that need a term which is not stored. They are computed from blended positions on
-  /// every path.
+  /// The number of touched elements that need a term which is not stored. These elements are computed from blended
+  /// positions on every path.
   std::size_t unstored_elements = 0;
   double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< the costs that the model expects of each path, in nanoseconds
 };
@@ -104,7 +104,8 @@ struct BlendEvaluation : BlendChoice {
 class BlendNormals {
  public:
   /// Prepare the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h).
-  /// The groups must be groups of its topology, and forget_corners() was not called. Throw only std::bad_alloc.
+  /// The groups must be groups of the set's topology, and forget_corners() must not have been called. Throw only
+  /// std::bad_alloc.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
                                               const BlendNormalsOptions& options = {});
@@ -112,8 +113,8 @@ class BlendNormals {
   BlendNormals& operator=(BlendNormals&&) noexcept;
   ~BlendNormals();
 
-  /// Sets the weights, chooses the path for them, and blends positions if that path needs them. This is the work that
-  /// all elements have in common. With one thread it does not allocate or throw. Initially all weights are 0.
+  /// Sets the weights, chooses the path for them, and blends positions if that path needs them. The call does the work
+  /// that all elements have in common, and with one thread does not allocate or throw. Initially all weights are 0.
   /// Precondition: `weights` has one number for each target.
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Writes the unit normals of a range of elements at the current weights, and returns counts. Does not allocate.

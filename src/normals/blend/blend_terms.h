@@ -42,13 +42,11 @@ class BlendTerms {
   explicit BlendTerms(const BlendSet& set) : BlendTerms(set, nullptr) {}
   BlendTerms(const BlendSet& set, const NormalGroups& groups) : BlendTerms(set, &groups) {}
 
-  /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
 
   /// Returns the term n_b, the normals of all elements in the base. The list `elements` of the term is empty, which
   /// means all elements in order.
   [[nodiscard]] BlendTerm base_term() const;
-  /// Returns the values of base_term() only.
   [[nodiscard]] std::vector<Vec3d> base() const { return base_term().values; }
   /// Returns n_b of one element. O(corners of its faces). Calling it for all elements needs no additional memory, but
   /// more time than base().
@@ -60,7 +58,7 @@ class BlendTerms {
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
 
   /// A term that is computed element by element, with the same values as linear() or pair(), so that the whole term
-  /// need not be in memory. It keeps at most 4 bytes for each vertex of the mesh and of the target. It also keeps the
+  /// need not be in memory. The object keeps at most 4 bytes for each vertex of the mesh and of the target, and the
   /// contributions of faces with more than 4 corners, or of all faces if there are at most 100,000. The constructor is
   /// O(faces that target i moves).
   class Term;
@@ -86,7 +84,7 @@ class BlendTerms {
     friend bool operator==(const PairCount&, const PairCount&) = default;
   };
   /// Returns the pairs of all targets. Each pair is listed only for the earlier target, in ascending order of the later
-  /// one. The function computes no term, so for each target it takes O(targets on each of the faces of this target).
+  /// target. The function computes no term, so for each target it takes O(targets on each of the faces of this target).
   [[nodiscard]] std::vector<std::vector<PairCount>> pair_elements() const;
 
   /// Returns the bytes of memory that this object keeps.
@@ -158,8 +156,8 @@ class BlendTerms::Term {
   Places first_;
   std::optional<Places> second_;
   bool is_linear_;
-  // The faces with more than kSmallFace corners in ascending order, and their contributions. It would take too long to
-  // compute a contribution again for each element that touches such a face.
+  // The faces with more than kSmallFace corners in ascending order, and their contributions. Computing a contribution
+  // again for each element that touches such a face would take too long.
   std::vector<std::uint32_t> large_faces_;
   std::vector<Rounded> of_large_faces_;
   std::vector<Rounded> of_all_faces_;       // empty if contributions are not kept

@@ -25,8 +25,8 @@ struct Edge {
   Vec3d from, to;
 };
 
-// Returns the direction at an end of the segment, without rounding. The result is the direction of the first nonzero
-// control normal, counted from this end.
+// Returns the direction at an end of the segment: the direction of the first nonzero control normal, counted from this
+// end. No tolerance is needed, because n(t) is a control normal at both ends.
 UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
   if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
   if (middle != Vec3d{}) return {unit(middle), Direction::kLimit};

@@ -1,15 +1,16 @@
 /// Computes n(t) of an element without any rounding, for cases that double cannot decide.
 ///
 /// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few floats
-/// (motion/segment_end.h). The control normals of a group are sums of those of its faces. So all of them are integers
-/// times 2^-298 (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's rule
+/// (motion/segment_end.h). The control normals of a group are sums of those of its faces. So all control normals are
+/// integers times 2^-298 (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's
+/// rule
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///
 /// is such an integer, too. If t is a quotient of differences of doubles (LocalTime), n(t) is such an integer divided
-/// by the square of the divisor. So the zeros and the direction of n(t) are known exactly. This takes about a
-/// microsecond for each t, hundreds of times longer than in double. So integers are only used where double fails: where
-/// the bound of its rounding error is not small relative to |n(t)|.
+/// by the square of the divisor. So the zeros and the direction of n(t) are known exactly. An exact evaluation takes
+/// about a microsecond for each t, hundreds of times longer than in double. So integers are only used where double
+/// fails: where the bound of its rounding error is not small relative to |n(t)|.
 ///
 /// No edges are computed. The sum of the products of neighbouring corners is the vector area (the shoelace formula),
 /// and for integers the distance from the origin does not matter.

@@ -8,8 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// The smallest t that does not count as 0. For this t, t^2 times the smallest product of two floats is still far above
-/// the smallest double.
+/// The smallest t that does not count as 0. For this t, t^2 times the smallest product of two floats is far above the
+/// smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
 /// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end, and a t below kSmallestTime becomes 0. NaN

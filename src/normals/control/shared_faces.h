@@ -3,7 +3,7 @@
 /// many corners are stored.
 ///
 ///     a polygon of 32,000 corners   computed once, and looked up by its 32,000 vertices
-///     a triangle, a quadrilateral   computed by each of their corners, which costs less than looking them up
+///     a triangle, a quadrilateral   computed for each of its corners, which costs less than looking them up
 ///
 /// Results have the same bits as if each face were computed for every element that needs it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_

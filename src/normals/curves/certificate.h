@@ -46,11 +46,11 @@ template <std::size_t M>
 /// underflows.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// The smallest size of the control normals of an element for which 1 / size serves as a scale. Smaller elements, which
-/// only tiny meshes have, are computed in double.
+/// The smallest size of control normals that are scaled by 1 / size before they are tested. Elements with smaller
+/// control normals, which only tiny meshes have, are computed in double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// The number that is added to the length of each control normal before kScaled16 is tested. In blocks of that kind,
-/// each control normal has its own exponent, and the range of these exponents is limited.
+/// The number that is added to the length of each control normal before kScaled16 is tested. In blocks of the kind
+/// kScaled16, each control normal has its own exponent, and the range of these exponents is limited.
 inline constexpr double kSmallestScale = 0x1p-30;
 
 /// Returns the lowest precision that keeps an element within the tolerance at every t, or no value if double is needed.
@@ -72,7 +72,8 @@ inline constexpr double kSmallestScale = 0x1p-30;
   return std::nullopt;
 }
 
-/// The largest relative error of the components of control normals in double with which float32 can be used.
+/// The largest relative error that control normals in double may have. If the error is larger, integers compute the
+/// control normals.
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// Returns the smallest size of n(t) in double for which the direction of n(t) is certain, relative to sum w_k

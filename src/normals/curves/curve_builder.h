@@ -3,8 +3,8 @@
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
 /// Elements are processed in chunks of 32 tiles, which stay in cache from the first step to the last. Several threads
-/// may build parts of 4 to 32 chunks at once. The boundaries of the parts do not depend on the threads, so the bits do
-/// not either.
+/// may build parts of 4 to 32 chunks at once. The boundaries of the parts do not depend on the threads, so the bits of
+/// the curves do not depend on the threads either.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 

@@ -1,5 +1,5 @@
-/// The formulas for one element of a curve of normals, over any scalar. With a scalar that counts operations, the
-/// formulas count the operations that the kernels execute for each element.
+/// The formulas for one element of a curve of normals, as templates on the scalar type. With a scalar that counts
+/// operations, the formulas count the operations that the kernels execute for each element.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 
@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// The weights of n0, m, n1 in eq. 5, which all elements share at one t. They are computed in double and rounded to
-/// float32.
+/// The weights of n0, m, n1 in eq. 5, which all elements share at one t. The weights are computed in double and rounded
+/// to float32.
 template <class S>
 struct QuadraticWeights {
   S w0, w1, w2;

@@ -23,8 +23,8 @@ struct FlaggedElements {
 
   [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
 
-  /// Returns the control normals of the flagged element at place `index`, multiplied by a power of two as its tile
-  /// stores them.
+  /// Returns the control normals of the flagged element at place `index` as its tile stores them, multiplied by a
+  /// power of two.
   [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }

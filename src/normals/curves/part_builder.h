@@ -125,7 +125,7 @@ struct CurvePart {
 struct Examined {
   ControlNormals normals;              // the control normals in double, as precise as the direction requires
   std::optional<Precision> precision;  // the precision that the element needs; no value if it is flagged
-  // For a flagged element: the relative size of n(t) above which double is certain of its direction.
+  // The relative size of n(t) above which double is certain of the direction. Only flagged elements need it.
   double certain = 0;
   // True if the element is flagged, and n(t) is not proven to be above `certain` at every t.
   bool needs_exact = false;

@@ -81,8 +81,6 @@ bool are_the_outputs(const NormalGroups& groups) {
   return true;
 }
 
-// ---- values in tiles on the stack ----------------------------------------------------------------------------------
-
 // The normals of some elements as vectors x y z.
 struct Vectors {
   template <std::size_t kCount>
@@ -125,8 +123,6 @@ void put(const Output& output, std::size_t i, const Vec3f& value) {
 }
 void put(const OctahedralOutput& output, std::size_t i, Octahedral value) { output.result[i] = value; }
 void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.result[i] = value; }
-
-// ---- the two sources of elements -----------------------------------------------------------------------------------
 
 // A form of output for memory that begins with element `first` and not with element 0.
 template <class Form>
@@ -224,9 +220,6 @@ struct AtWeights {
   const BlendNormals& normals;
 };
 
-// ---- from elements to outputs --------------------------------------------------------------------------------------
-
-// Returns the range of elements in a tile.
 template <class Source>
 IndexRange tile_of(const Source& source, std::size_t tile) {
   const std::size_t first = tile * Source::kTileElements;
@@ -279,8 +272,6 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
   }
   return zeros;
 }
-
-// ---- vertex buffers ------------------------------------------------------------------------------------------------
 
 // Returns the control normals of one element of curves with the tolerance kExactTolerance. (If n(t) is constant or
 // linear, these are the control normals that the curves have stored.)

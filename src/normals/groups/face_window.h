@@ -1,8 +1,8 @@
 /// A window that slides over the faces of a mesh, for sums over the faces around one element after the other.
 ///
 /// On a well-ordered mesh, the faces around neighbouring vertices are neighbours, too. So the values of a face that
-/// sums need are computed once, for the first element that needs them. They are kept in a ring until the window has
-/// moved on:
+/// sums need are computed once, for the first element that needs them. The values are kept in a ring until the window
+/// has moved on:
 ///
 ///     faces        ... 40 41 42 [43 44 45 46 47 48 49 50] 51 52 ...      begin = 43, end = 51, capacity = 8
 ///     place in it                 3  4  5  6  7  0  1  2                 face f is at f & (capacity - 1)

@@ -1,5 +1,5 @@
-/// Welds the vertices that coincide in all keyframes, and separately those that coincide in keyframe 0. Used by normals
-/// and workflow.
+/// Welds the vertices that coincide in all keyframes, and separately the vertices that coincide in keyframe 0. Used by
+/// normals and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 

@@ -51,7 +51,6 @@ class NormalRecompute {
   /// elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne);
 
-  /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
   /// Returns the number of bytes of scratch memory.
   [[nodiscard]] std::size_t bytes() const noexcept;

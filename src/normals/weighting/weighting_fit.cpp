@@ -151,8 +151,8 @@ CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, con
   return {low + (high - low) / 2, (high - low) / 2 + 1e-15};
 }
 
-// The term that a corner adds, as a series about the centre of a piece and about all of the piece. The true term may
-// differ from the series by a vector of length `slack`.
+// The term that a corner adds, as two series: one about the centre of a piece, and one about all points of the piece.
+// The true term may differ from the series by a vector of length `slack`.
 struct TermSeries {
   VectorSeries<kTerms> here, around;
   double slack = 0;
@@ -209,8 +209,8 @@ struct Element {
   Weighting weighting;
   ControlNormals fit;
 
-  // The cross product and the dot product of the fit and the element's normal, as series about the centre of a piece
-  // and about all of the piece.
+  // The cross product and the dot product of the fit and the element's normal, as series about the centre of a piece,
+  // and as series about all points of the piece.
   struct Products {
     VectorSeries<kTerms> cross_here, cross_around;
     Series<kTerms> dot_here, dot_around;

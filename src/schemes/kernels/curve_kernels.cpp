@@ -123,9 +123,9 @@ auto Visit(Formula formula, Visitor visit) {
   }
 }
 
-// Calls write(first block, number of blocks, memory) until the normals of all elements are written. The memory is a
-// buffer, which is copied to the result afterwards, if vectors cannot be stored in the layout of the result, and also
-// for a last block that is not full.
+// Calls write(first block, number of blocks, memory) until the normals of all elements are written. The memory is
+// usually the result itself. The memory is a buffer, which is then copied to the result, if the result is neither
+// packed nor in planes, and for a last block that is not full.
 template <class Write>
 void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;

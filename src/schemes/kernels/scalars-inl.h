@@ -65,8 +65,8 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
   return {hn::IfThenElse(mask.low, a.low, b.low), hn::IfThenElse(mask.high, a.high, b.high)};
 }
 
-// Return true if a condition holds for any of the elements. Callers use this to skip rare cases, which never changes a
-// result.
+// Return true if a condition holds for any of the elements. Callers use these functions to skip rare cases, which never
+// changes a result.
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 

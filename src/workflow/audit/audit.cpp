@@ -1,4 +1,4 @@
-// Code that audits of glTF files and audits of sequences share.
+// Implements the functions that audits of glTF files and audits of sequences share.
 #include "chronormal/workflow/audit.h"
 
 #include <algorithm>
@@ -219,9 +219,9 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // `differences` are the rendered minus the true normals. An edge is torn if the differences at its two ends are too
-  // far apart. If both differences are shorter than half of the smallest limit, the edge is not torn. Most edges pass
-  // this test and need no other.
+  // `differences` are the rendered normals minus the true normals. An edge is torn if the differences at its two ends
+  // are too far apart. If both differences are shorter than half of the smallest limit, the edge is not torn. Most
+  // edges need no other test.
   constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // the factor leaves a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;

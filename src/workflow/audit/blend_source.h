@@ -43,8 +43,9 @@ class BlendSource {
   /// the source. The outputs of the source, which are vertices or corners, are the outputs of the part. If the joints
   /// of the skin move, moment must return the time in seconds. `involved` lists targets in ascending order. `weights`
   /// writes a value for each of these targets, and all other targets always have weight 0. The caller places the source
-  /// at `samples` moments of each segment, in ascending order. If joints jump at the end of a segment, their pose before
-  /// the jump is used, but after the last of `segments` segments the pose after the jump, which viewers keep showing.
+  /// at `samples` moments of each segment, in ascending order. If joints jump at the end of a segment, their pose
+  /// before the jump is used, but after the last of `segments` segments the pose after the jump, which viewers keep
+  /// showing.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr, std::size_t segments = 1);
@@ -66,7 +67,7 @@ class BlendSource {
   /// transforms them.
   void show();
   /// Returns a normal of the i-th output as the screen shows it: transformed by the skin, if there is one. The result
-  /// has any length.
+  /// may have any length.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
   /// Returns true if the skin collapses the true normal, so that it is seen as zero or as not finite. No target could
   /// correct such a normal.

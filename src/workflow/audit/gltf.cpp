@@ -1,6 +1,6 @@
-// Audits glTF files. For each mesh, the audit measures the angles between the author's normals and the geometry. It
-// then measures the errors of each target from weight 0 to 1, of each track of weights, and of each expression of an
-// avatar.
+// Audits glTF files. For each mesh, the audit measures the angles between the author's normals and the geometry. The
+// audit then measures the errors of each target from weight 0 to 1, of each track of weights, and of each expression of
+// an avatar.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -76,7 +76,6 @@ void ResetPoints(std::span<const float> base, IndexRange vertices, double* point
   StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowAt(points, last));
 }
 
-// Adds a multiple of a delta to one point, in float32.
 HWY_INLINE void MoveFloatPoint(const float* delta, float weight, float* point) {
   for (std::size_t k = 0; k < 3; ++k) point[k] += weight * delta[k];
 }

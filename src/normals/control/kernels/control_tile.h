@@ -1,4 +1,4 @@
-/// Sixteen elements whose control normals one kernel computes, and that another kernel packs into NormalCurves.
+/// The control normals of sixteen elements, which one kernel computes and another kernel packs into NormalCurves.
 ///
 ///     normals     n0.x of 16 elements, n0.y of 16, n0.z, m.x, m.y, m.z, n1.x, n1.y, n1.z
 ///     magnitude   for each element, at least the sum of the absolute products that went into any one component

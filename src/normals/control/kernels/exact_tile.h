@@ -34,8 +34,8 @@ struct EdgedTile : ExactTile {
 /// Writes the control normals of an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
-/// More than twice the rounding error of a control normal of a triangle in double, relative to the magnitude of the
-/// triangle.
+/// An upper bound of twice the rounding error of a control normal of a triangle in double, relative to the magnitude of
+/// the triangle.
 inline constexpr double kErrorAbove = 0x1p-47;
 
 /// Returns a float that is not less than a magnitude, and 0 for the magnitude 0.

@@ -24,8 +24,8 @@ HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // Sets the degrees of a tile to 2 and returns true if float32 alone proves that all degrees are 2. The error of float32
-// in n0 - 2 m + n1 is below 2^-20 of the largest component. This is far above the tolerance of degree(), but in most
-// motions n0 - 2 m + n1 is larger still.
+// in n0 - 2 m + n1 is below 2^-20 of the largest component. In most motions, n0 - 2 m + n1 is larger than this error,
+// which is far above the tolerance of degree().
 HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
   bool all = true;
@@ -44,7 +44,7 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
 }
 
 // Returns the error of a sum of `products` products in float32, relative to the absolute products (docs/theory.md,
-// section 13). It includes the roundings of each product and of its additions to the sum.
+// section 13). The error includes the roundings of each product and of its additions to the sum.
 HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
   return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
 }

@@ -48,8 +48,8 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
 
 // The ways of loading points. kPacked, kEnds and kRow load the 16 bytes of a row that begins with x y z: in packed
-// rows, in rows with both ends side by side, and in rows of any stride. kLastRow loads only 12 bytes of a row. kAny
-// loads one coordinate after the other, in any layout.
+// rows, in rows with both ends of the segment side by side, and in rows of any stride. kLastRow loads only 12 bytes of
+// a row. kAny loads one coordinate after the other, in any layout.
 enum class PointAccess { kPacked, kEnds, kRow, kLastRow, kAny };
 
 constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
@@ -291,8 +291,8 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
 
 // Calls body(access, corners) for the triangles first ... first + 15. `access` is the fastest way of loading points
 // that works for them, as a constant, and `corners` are their 48 vertices. From `end` on, the last triangle is
-// repeated. If the vertices are far from each other in memory, those of later triangles are prefetched. Precondition:
-// first < end.
+// repeated. If the vertices are far from each other in memory, the vertices of later triangles are prefetched.
+// Precondition: first < end.
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {

@@ -26,7 +26,6 @@ struct TileCertificates {
   /// The lowest precision that suffices for all known elements that are not flagged.
   Precision precision = Precision::k11;
 
-  /// Removes the results for all elements.
   void clear() noexcept {
     known = flagged = needs_exact = 0;
     precision = Precision::k11;

@@ -55,8 +55,8 @@ enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 /// The degree of a block whose elements are all flagged.
 inline constexpr int kNoDegree = -1;
 
-/// Returns the kind of a block for elements of a degree. with_lengths asks for lengths, which matters only for degree
-/// 0.
+/// Returns the kind of a block for elements of a degree. If with_lengths is true, blocks of degree 0 also store the
+/// lengths of the normals.
 [[nodiscard]] constexpr BlockKind kind_for(Precision precision, int degree, bool with_lengths) {
   if (degree == kNoDegree) return BlockKind::kNone;
   if (degree == 0) return with_lengths ? BlockKind::kUnitLength : BlockKind::kUnit;
@@ -95,7 +95,8 @@ struct CurveWeights {
   [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 
-/// An upper bound, for every t, of the quotient of two sums: the absolute errors of the int16 weights, and the weights.
+/// An upper bound, for every t, of the sum of the absolute errors of the int16 weights divided by the sum of the
+/// weights.
 inline constexpr double kWeightError = 1.5 / 32767;
 
 }  // namespace chronormal::inline internal

@@ -17,9 +17,9 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kPrefetchStep = 64;
 
-// The following structs evaluate the kinds of blocks. Each keeps the weights in registers. Its function `direction`
-// computes the vectors of kLanes elements of a block, from the lane `lane` on. These vectors have unit length only if
-// kUnitLength is true.
+// The following structs evaluate the kinds of blocks. Each struct keeps the weights in registers. Its function
+// `direction` computes the vectors of kLanes elements of a block, from the lane `lane` on. These vectors have unit
+// length only if kUnitLength is true.
 
 struct Unit {
   static constexpr bool kUnitLength = true;
@@ -181,9 +181,9 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // Returns one component of n(t). The ends are in the upper 11 bits of their halves, which multiplies their values by
-  // 32. The two parts of m, shifted to the upper 5 bits of their halves, are multiplied by 2048. The part of m that is
-  // in the low bits of the halves is added first, so that no partial sum leaves the range of int32.
+  // Returns one component of n(t). n0 and n1 are in the upper 11 bits of the halves of a word, so they are multiplied
+  // by 32. The two parts of m, shifted to the upper 5 bits of their halves, are multiplied by 2048. The part of m that
+  // is in the low bits of the halves is added first, so that no partial sum leaves the range of int32.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);

@@ -23,8 +23,8 @@ struct PrecisionLimits {
 
   /// The largest `magnitude` / |n(t)|, where `magnitude` is at least the largest component. In tiles that were computed
   /// in double, rounding errors are below 2^-45 of the magnitude (12 u for a face, and u for each of up to 100 faces
-  /// that are added, where u = 2^-53). With this limit, they turn n(t) by less than 2^-24, and no control normal is
-  /// below 2^-21 of the largest.
+  /// that are added, where u = 2^-53). With this limit, rounding errors turn n(t) by less than 2^-24 rad, and no
+  /// control normal is below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
   /// The largest tolerance in radians. For larger tolerances, the difference between a chord and its angle would

@@ -22,7 +22,7 @@
 
 namespace chronormal::inline internal {
 
-/// The cache or memory that holds everything that a pass reads and writes. A small set has up to 1 MiB, a medium one up
+/// The cache or memory that holds everything that a pass reads and writes. A small set has up to 1 MiB, a medium set up
 /// to 8 MiB.
 enum class WorkingSet { kSmall, kMedium, kSharedCache, kMemory };
 inline constexpr std::size_t kWorkingSets = 4;

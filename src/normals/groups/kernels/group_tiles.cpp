@@ -31,8 +31,8 @@
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 namespace chronormal::inline internal {
 
-// More than twice the rounding error of a sum over a path of up to kMostPathPoints points, relative to the magnitude of
-// the sum.
+// An upper bound of twice the rounding error of a sum over a path of up to kMostPathPoints points, relative to the
+// magnitude of the sum.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
 // The inputs of the kernels below.
@@ -62,8 +62,6 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // The number of rows of indices by which points are prefetched in advance.
 constexpr std::size_t kRowsAhead = 24;
-
-// ---- points --------------------------------------------------------------------------------------------------------
 
 HWY_INLINE void StoreColumns(const Lanes3& v, float (*to)[kTile], std::size_t lane) {
   hn::Store(v.x, kFloats, to[0] + lane);
@@ -101,8 +99,6 @@ HWY_INLINE bool HasLast(const std::uint32_t* indices, std::size_t rows, std::siz
   for (std::size_t i = kLanes; i < kTile * rows; i += kLanes) highest = hn::Max(highest, hn::LoadU(tag, indices + i));
   return !hn::AllFalse(tag, hn::Eq(highest, last));
 }
-
-// ---- sums ----------------------------------------------------------------------------------------------------------
 
 HWY_INLINE Doubles3 DoublesAt(const float (*at)[kTile], std::size_t lane) {
   const auto load = [lane](const float* plane)
@@ -206,8 +202,6 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   hn::Store(hn::Mul(share, n1), kDoubles, errors[2] + lane);
 }
 
-// ---- tiles ---------------------------------------------------------------------------------------------------------
-
 // Rounds the sums to float32 and writes them to the tile. Returns the bits of the elements with a component that may be
 // only rounding error.
 HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows, const ExactTile& exact,
@@ -243,8 +237,6 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
     LoadRing<PointAccess::kAny>(segment, indices, rows, points);
   }
 }
-
-// ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
 // Computes a tile entirely in float32. `magnitude` of the tile is a bound of the error.
 template <PointAccess kAccess>

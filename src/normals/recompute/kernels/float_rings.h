@@ -1,5 +1,5 @@
-/// Computes the unit normals of faces and of groups in float32 from points, sixteen at a time. These are the inner
-/// loops of FloatRecompute. groups/rings.h describes the paths that the loops follow.
+/// Computes the unit normals of faces and of groups in float32 from points, sixteen at a time. These functions are the
+/// inner loops of FloatRecompute. groups/rings.h describes the paths that the loops follow.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
 
@@ -18,8 +18,8 @@ struct RingPoints {
   bool fetch = false;
 };
 
-/// Writes the interpolated points of a range as rows x y z _: s from + t to in float32. The first row of `result` is
-/// that of the first point of the range.
+/// Writes the interpolated points s * from + t * to of a range, computed in float32, as rows x y z _. The first row of
+/// `result` is that of the first point of the range.
 void interpolate_points(VectorView<const float> from, VectorView<const float> to, float s, float t, IndexRange points,
                         float* result) noexcept;
 

@@ -146,7 +146,7 @@ HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::u
   return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
 }
 
-// Loads edges by vectors, which read one float more than the three of each vertex.
+// Loads edges with vector instructions, which read one float more than the three floats of a vertex.
 template <std::size_t kStride>
 HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
   for (std::size_t k = 0; k < kBlock; k += kLanes, corners += 3 * kLanes) {

@@ -1,11 +1,11 @@
-/// Computes the normals of moving triangles at one t, sixteen at a time, and their sums. These are the inner loops of
-/// NormalRecompute.
+/// Computes the normals of moving triangles at one t, sixteen at a time, and their sums. These functions are the inner
+/// loops of NormalRecompute.
 ///
 /// Most faces use float32 for edges and double for everything else: positions are subtracted in float32, and edges are
 /// interpolated and multiplied in double. Let u = 2^-24, and let E = s|e0| + t|e1| and F be the interpolated lengths of
 /// both edges. The errors are
 ///
-///     edges       each component within u of itself            |error of n| <= 2 u 2/sqrt(3) E F = 2.31 u E F
+///     edges       relative error of each component <= u        |error of n| <= 2 u 2/sqrt(3) E F = 2.31 u E F
 ///     to float32  of n, and of its multiple of length 1        2 u |n|
 ///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
 ///
@@ -31,7 +31,7 @@
 
 namespace chronormal::inline internal {
 
-/// The largest A B / |n|^2 of a triangle that is not thin (see the top of this file). The value follows from 2.31
+/// The largest A B / |n|^2 of a triangle that is not thin (see the top of this file). The value 40 follows from 2.31
 /// sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
