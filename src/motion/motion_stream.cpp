@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// A reader of one keyframe on another thread while the caller computes. On systems without threads, nothing is read in
+// Reads one keyframe on another thread while the caller computes. On systems without threads, nothing is read in
 // advance.
 class ReadAhead {
  public:

@@ -91,8 +91,8 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   }
 }
 
-// The bounds that tell, for each face of a segment on cubics, whether a number of straight pieces is enough to keep the
-// normal within an angle, given by its sine.
+// Decides, for each face of a segment on cubics, if a number of straight pieces is enough to keep the normal within an
+// angle, which is given by its sine.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)

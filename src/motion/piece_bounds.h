@@ -34,7 +34,7 @@
 
 namespace chronormal::inline internal {
 
-/// A vector that changes linearly over a piece, by its values at both ends.
+/// A vector that changes linearly over a piece, given by its values at both ends.
 struct Ends {
   Vec3d from, to;
 };

@@ -13,8 +13,8 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// Returns the sign of a sum of doubles that does not overflow. Adds the terms to a list of numbers whose bits do not
-// overlap (Shewchuk 1997, Grow-Expansion). The largest number of this list has the sign of the sum.
+// Returns the sign of a sum of doubles. The sum must not overflow. Adds the terms to a list of numbers whose bits do
+// not overlap (Shewchuk 1997, Grow-Expansion). The largest number of this list has the sign of the sum.
 int sign_of_sum(const std::array<double, 6>& terms) {
   std::array<double, 6> parts{};
   std::size_t count = 0;

@@ -42,7 +42,7 @@ struct OptimalQuaternion : UniformArc {
 
   static double best_phi(const ElementMotion& element, const CircleFamily& circles) {
     const ExactSamples exact(element.control_normals());
-    // If the ends are antipodal, every arc of the family is half a turn, for phi in both directions.
+    // If the ends are antipodal, every arc of the family is half a turn, so phi is searched from -pi to pi.
     const double limit = circles.kind == CircleFamily::Kind::kAntipodal ? kPi : kPi / 2;
     constexpr std::size_t kGrid = 21;
     std::array<double, kGrid + 4> points;

@@ -38,8 +38,8 @@ class Recompute final : public Scheme {
   [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
-  // Returns the bytes of the indices of all corners, and of six floats for each vertex, three at each end. A closed
-  // triangle mesh has half as many vertices as faces.
+  // Returns the bytes of the indices of all corners, and of six floats for each vertex, three at each end. If the
+  // scheme has only a part of the faces, the same part of the vertices counts.
   [[nodiscard]] std::size_t bytes() const noexcept override {
     const std::size_t faces = segment_.topology == nullptr ? 0 : segment_.topology->face_count();
     if (faces == 0) return 0;

@@ -23,7 +23,7 @@ bool holds(const std::string& path, Holds kind) {
 }
 
 // Returns the glTF files in a folder and its subfolders. Returns no files if the folder directly contains meshes, or if
-// it cannot be listed; the caller that opens the folder then reports the error.
+// the folder cannot be listed; the caller that opens the folder then reports the error.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
   fs::recursive_directory_iterator entries(path_of(folder), fs::directory_options::skip_permission_denied, code);

@@ -63,7 +63,7 @@ bool overflows(std::string_view number) {
   return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
-// The facts that a scan of the text finds before a tree is built.
+// The result of a scan of the text, which is made before the tree of values is built.
 struct Scan {
   std::size_t too_deep = std::string_view::npos;  // offset of the first byte that is nested deeper than allowed
   struct Number {
@@ -101,9 +101,8 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// A builder of the tree of values while the parser goes through the text. The builder leaves out the items that
-// JsonItems takes. (The library's own parser with a callback is slow: at the end of every object it goes through all
-// siblings.)
+// Builds the tree of values while the parser goes through the text. The builder leaves out the items that JsonItems
+// takes. (The library's own parser with a callback is slow: at the end of every object it goes through all siblings.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` has these

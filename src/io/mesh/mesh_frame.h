@@ -11,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// The result of a mesh reader: at least one vertex and one face, and finite positions.
+/// The result of a mesh reader, which has at least one vertex and one face, and only finite positions.
 struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()

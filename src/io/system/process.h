@@ -5,8 +5,8 @@
 
 namespace chronormal::inline internal {
 
-/// Opens each closed standard stream on the null device, in the direction that the program does not use. So using such
-/// a stream still fails, but no file that is opened later gets the number of the stream. On Windows, also makes all
+/// Opens each closed standard stream on the null device, in the direction that the program does not use. Using such a
+/// stream fails as before, but no file that is opened later gets the number of the stream. On Windows, also makes all
 /// three streams pass bytes unchanged.
 void prepare_standard_streams() noexcept;
 

@@ -17,7 +17,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
-// The number of elements that are computed together. The sums of so many elements take 16 KiB on the stack.
+// The number of elements that are computed together. The sums of this number of elements take 16 KiB on the stack.
 constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;
 constexpr std::size_t kSlicesOfWord = kBitsOfWord / kRingLanes;
 constexpr std::size_t kMostRows = kMostRingPoints + 2;
@@ -236,8 +236,9 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // The list of a target has all elements that touch a face which the target moves. So it also has all elements of
-      // the stored pairs of the target, and an empty part of the list means that the pairs have nothing to add either.
+      // The list of a target has all elements that touch a face which the target moves. So the list also has all
+      // elements of the stored pairs of the target. If a part of the list is empty, the pairs have nothing to add
+      // either.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);
@@ -406,7 +407,7 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   const Rings& rings = source.storage.rings();
   const std::size_t elements = source.storage.terms().size();
   const double whole = kPathPoint * of(kRingLanes * rings.row_count()) + kWrittenElement * of(elements);
-  // Average cost in nanoseconds of computing an element from points.
+  // The average cost in nanoseconds of computing an element from points.
   const double anew = elements > 0 ? whole / of(elements) : 0;
   const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +

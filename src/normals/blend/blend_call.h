@@ -25,8 +25,8 @@ struct BlendInput {
   bool in_float32;  ///< true if the path kWhole works in float32
 };
 
-/// Chooses the path of the computation (BlendPath) that takes least time at some weights. In the pose, sets only the
-/// active targets, the elements that they touch, and the elements without stored terms.
+/// Chooses the path of the computation (BlendPath) that takes the least time at some weights. In the pose, sets only
+/// the active targets, the elements that they touch, and the elements without stored terms.
 BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
 /// Sets the weights of a pose: chooses the path of the computation (BlendPath), and computes the data that all elements

@@ -121,7 +121,7 @@ class BlendNormals {
   /// Preconditions: elements.first is a multiple of 64, and result has as many elements as the range.
   BlendEvaluation unit_normals(IndexRange elements, VectorView<float> result) const noexcept;
 
-  /// Sets the weights and writes the normals of all elements. With one thread it does not allocate or throw.
+  /// Sets the weights and writes the normals of all elements. With one thread, the call does not allocate or throw.
   /// Preconditions: weights has one number for each target, and result has size() elements.
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);

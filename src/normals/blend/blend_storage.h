@@ -48,8 +48,8 @@ struct StoredTarget {
 
 class BlendStorage {
  public:
-  /// Counts the terms, and decides which of them to store, but computes none yet. If groups is nullptr, the elements
-  /// are faces. The set and the groups must outlive the object.
+  /// Counts the terms, and decides which of them to store, but does not compute them. If groups is nullptr, the
+  /// elements are faces. The set and the groups must outlive the object.
   BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes);
 
   /// Computes the terms that are to be stored.

@@ -20,7 +20,7 @@ constexpr std::size_t kTermsTogether = 1024;
 // The largest number of faces for which it takes little memory to store the contribution of each face.
 constexpr std::size_t kFewFaces = 100000;
 // The largest average distance between the numbers of a term's faces at which a table from the first to the last face
-// is still small enough.
+// takes little enough memory.
 constexpr std::size_t kFarApart = 16;
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
@@ -34,7 +34,7 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// A finder of the faces around vertices.
+// Finds the faces around vertices.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
@@ -90,7 +90,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// A counter of the elements that two targets have in common. The counter has a list of the targets that move each face.
+// Counts the elements that two targets have in common. The object has a list of the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)

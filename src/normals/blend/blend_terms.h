@@ -48,8 +48,8 @@ class BlendTerms {
   /// means all elements in order.
   [[nodiscard]] BlendTerm base_term() const;
   [[nodiscard]] std::vector<Vec3d> base() const { return base_term().values; }
-  /// Returns n_b of one element. O(corners of its faces). Calling it for all elements needs no additional memory, but
-  /// more time than base().
+  /// Returns n_b of one element. O(corners of its faces). Calling the function for all elements needs no additional
+  /// memory, but more time than base().
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const;
   /// Returns the linear term A_i of target i. O(n log n) for n faces that target i moves; uses all cores.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
@@ -135,7 +135,7 @@ class BlendTerms::Term {
 
     const BlendTarget* target;
     std::uint32_t first = 0;
-    // For the vertices from `first` on, their places in the target's list; empty if the vertices are too scattered.
+    // The places in the target's list of the vertices from `first` on; empty if the vertices are too scattered.
     std::vector<std::uint32_t> of_vertices;
   };
 

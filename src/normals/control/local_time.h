@@ -1,4 +1,4 @@
-/// Moves the t that a caller passes into the range [0, 1] of a segment. No other functions do this.
+/// Moves the t that a caller passes into the range [0, 1] of a segment. No other functions move t.
 #ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 #define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 

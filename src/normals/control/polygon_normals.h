@@ -13,7 +13,8 @@
 namespace chronormal::inline internal {
 
 /// The size of a coefficient of n(t), relative to the largest control normal, below which it counts as zero in
-/// degree(). Leaving it out changes the direction by about 2^-28 rad, far below the errors of an evaluation in float32.
+/// degree(). Leaving the coefficient out changes the direction by about 2^-28 rad, far below the errors of an
+/// evaluation in float32.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
 /// The largest rounding error of a control normal in double, relative to its length. A control normal whose error may

@@ -50,7 +50,7 @@ class LargeFaceValues {
   }
 
  private:
-  // For faces with at most this many corners, storing values does not pay.
+  // If a face has at most this many corners, computing its value costs less than looking it up.
   static constexpr std::size_t kFewCorners = 64;
 
   mutable std::mutex mutex_;

@@ -35,7 +35,7 @@ std::size_t part_size(std::size_t size) {
 }
 
 // A copy of the positions of a segment in which both positions of a vertex share a cache line, with 32 bytes per
-// vertex. If vertices are in random order, this halves the cache misses.
+// vertex. If vertices are in random order, the copy halves the cache misses.
 class EndsSideBySide {
  public:
   // Prepares the copy of the positions of `segment`, in `memory` if that is large enough. Nothing is copied yet.

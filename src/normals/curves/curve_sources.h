@@ -45,7 +45,7 @@ class GivenNormals {
       const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, c);
-      // No products were rounded for given values, so they count as exact.
+      // No products were rounded for given values, so the values count as exact.
       tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
       tile.degree[i % kTile] = degree(c);
     }

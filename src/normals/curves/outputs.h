@@ -85,8 +85,8 @@ struct Rgb10A2Output {
   MemoryAccess access;
 };
 
-/// The form of all other results, which a function writes one by one from an index and a vector. The kernel writes into
-/// planes on the stack, a few blocks at a time, from which the function takes its vectors.
+/// The form of results in any other layout. The function `set` writes each result from its index and its vector. The
+/// kernel writes a few blocks at a time into planes on the stack, from which the vectors are taken.
 template <class Set>
 struct AnyOutput {
   WorkingSet working_set;

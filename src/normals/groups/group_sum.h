@@ -1,5 +1,5 @@
 /// Adds up the control normals of faces. If faces cancel so far that a sum is hardly more than rounding error, integers
-/// compute it.
+/// compute the sum.
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 

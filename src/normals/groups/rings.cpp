@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostSearched = 64;
 using Path = std::vector<std::uint32_t>;  // first the centre, and then the points of the path
 
-// A maker of the paths around elements, one after the other.
+// Makes the paths around elements, one after the other.
 class PathMaker {
  public:
   PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)

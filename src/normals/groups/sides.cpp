@@ -38,7 +38,7 @@ bool has_twice(std::span<const std::uint32_t> loop) {
   return false;
 }
 
-// Disjoint sets of nodes. Two sets are not joined if this would join two nodes that must stay apart.
+// Disjoint sets of nodes. Two sets are not joined if two of their nodes must stay apart.
 class JoinedNodes {
  public:
   JoinedNodes(std::size_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> apart)

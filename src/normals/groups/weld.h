@@ -14,9 +14,9 @@ struct WeldedPoints {
   Points at_start;  ///< points where vertices that coincide in keyframe 0 are one point
 };
 
-/// Welds the vertices of a stream that coincide in all keyframes, and separately those that coincide in keyframe 0, in
-/// one pass. If sides are not kept apart (sides.h), all vertices that share a place become one point. Errors: those of
-/// the stream.
+/// Welds the vertices of a stream that coincide in all keyframes, and separately the vertices that coincide in keyframe
+/// 0, in one pass. If sides are not kept apart (sides.h), all vertices that share a place become one point. Errors:
+/// those of the stream.
 [[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apart = true);
 
 }  // namespace chronormal::inline internal

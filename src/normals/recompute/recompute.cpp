@@ -445,7 +445,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
 
 std::size_t NormalRecompute::Parts::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
-  // With one thread, there is only one block. Otherwise, the blocks are the same for every number of threads.
+  // One thread gets a single block. For several threads, the blocks do not depend on the number of threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
     if (threads == Threads::kOne || count <= block)
       body(IndexRange{0, count});

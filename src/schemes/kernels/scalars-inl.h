@@ -124,7 +124,7 @@ HWY_INLINE Triple<Lanes> select(const LanesMask& mask, const Triple<Lanes>& a, c
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// A reader of the coefficients of the current elements, one value per plane.
+// Reads the coefficients of the current elements, one value per plane.
 template <class S>
 struct Coefficients {
   const S* first;
@@ -133,7 +133,7 @@ struct Coefficients {
   HWY_INLINE S operator[](std::size_t plane) const { return first[plane]; }
 };
 
-// A reader and writer of the values that change from step to step while a curve is played, one value per plane.
+// Reads and writes the values that change from step to step while a curve is played, one value per plane.
 template <class S>
 struct State {
   S* first;

@@ -341,8 +341,9 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
     return t == 1 ? times[segment + 1] : (1 - t) * times[segment] + t * times[segment + 1];
   };
   // Weights that jump at a key are judged just before the jump at the end of a segment, and after the jump at the
-  // beginning of the next segment. At the end of the last segment they are judged after the jump, because viewers keep
-  // showing this pose. Rules that interpolate normals between the ends of a segment need the weights before the jump.
+  // beginning of the next segment. At the end of the last segment, the weights are judged after the jump, because
+  // viewers keep showing this pose. Rules that interpolate normals between the ends of a segment need the weights
+  // before the jump.
   const bool shows_last = mesh.rule == AuditRule::kGltf;
   const auto just_before = [last = subject.segments - 1, shows_last](std::size_t segment, double t) {
     return t == 1 && (segment < last || !shows_last);

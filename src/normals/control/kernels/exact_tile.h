@@ -24,7 +24,7 @@ struct BoundedTile : ExactTile {
   std::uint32_t left_out = 0;  ///< bits of the elements that are left to other code
 };
 
-/// The control normals of sixteen faces, and the lengths of their edges.
+/// The control normals of sixteen faces, and bounds of the components of their edges.
 struct EdgedTile : ExactTile {
   /// For each face, a bound of every component of the edges from its first corner, at both ends of the segment. The
   /// bound is infinity if the face is not a triangle.

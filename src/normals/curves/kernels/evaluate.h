@@ -76,7 +76,7 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Octahed
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept;
 
 /// Makes the results that this thread has streamed visible to other threads. Call this function once, after the last
-/// span, since it waits for the memory.
+/// span, since the call waits for the memory.
 void flush_stream() noexcept;
 
 }  // namespace chronormal::inline internal

@@ -41,7 +41,7 @@ struct PieceTest {
   Floats shortest_square;
 };
 
-// The number of times that a piece is halved at most, if the test of the whole piece gives no answer.
+// The largest number of times that a piece is halved, if the test of the whole piece gives no answer.
 inline constexpr int kPieceDepth = 2;
 
 HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }

@@ -8,8 +8,8 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // A thread for which the following comparison is false takes the number of the next trial. Several threads may do
-  // this at once.
+  // A thread for which the following comparison is false takes the number of the next trial. Several threads may take
+  // numbers at the same time.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -20,7 +20,7 @@ std::optional<std::size_t> PrefetchRule::next() noexcept {
 }
 
 // Records a trial. The distance with the shortest median time is the best. The median ignores trials that the system
-// interrupted or that found cold caches, and also one that was fast by chance.
+// interrupted or that found cold caches, and also a trial that was fast by chance.
 void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
   assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
   const std::size_t trial = counts_[distance].fetch_add(1, std::memory_order_relaxed);

@@ -16,8 +16,8 @@
 
 namespace chronormal::inline internal {
 
-/// A writer of tiles of elements, which it computes from the points on the paths around the elements (groups/rings.h).
-/// The first object for some groups makes these paths, which the groups keep.
+/// Writes tiles of elements, which are computed from the points on the paths around the elements (groups/rings.h). The
+/// first object for some groups makes these paths, which the groups keep.
 class GroupTiles {
  public:
   /// Prepares to write elements of groups. The groups must outlive the object, belong to the topology of the segment,
