@@ -20,7 +20,6 @@ namespace chronormal::inline internal {
   return static_cast<std::size_t>(topology.face(f).data() - topology.corners().data());
 }
 
-/// Returns the face of each corner.
 [[nodiscard]] inline std::vector<std::uint32_t> face_of_each_corner(const Topology& topology) {
   std::vector<std::uint32_t> faces;
   faces.reserve(topology.corner_count());
