@@ -158,8 +158,8 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
   if (!fault || fault->kind == Kind::kUnlit) return fault;
-  // If the targets were judged alone and one of them has an error at least as large, the findings of the targets
-  // already report this error.
+  // If a target that was judged alone has an error about as large, the findings of the targets already report the error
+  // of the track.
   if (are_targets_judged && worst_target > kAuditFault && subject.error.worst <= worst_target + kAuditFault)
     return std::nullopt;
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;

@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// Lists notes: facts that are no faults, but that a reader of the audit should know.
+/// Lists notes: facts that are no faults, but that a user of the audit should know.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
 
 /// Makes notes on the nodes that have the mesh and a skin. The notes tell which skins were used to judge the subjects,
@@ -26,8 +26,8 @@ namespace chronormal::inline internal {
 /// Lists the viewers that support fewer targets than the mesh has.
 [[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Viewer> viewers);
 
-/// Finds the faults of a measured target. `weights` writes the weights of the involved targets at which the target was
-/// measured.
+/// Finds the faults of a measured target. `weights` is the function that wrote the weights of the involved targets when
+/// the target was measured.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
                                                          const AuthorTruth& truth, AuditRule rule,
                                                          const AuditSubject& subject, const JudgedPart& part,

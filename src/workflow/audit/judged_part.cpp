@@ -46,8 +46,8 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   }
   vertices_ = number_used(vertex);
 
-  // Keeps the normals of faces in memory if they take little memory, or if computing them again for each element would
-  // take long.
+  // Keeps the normals of faces in memory if these normals take little memory, or if computing them again for each
+  // element would take long.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
   const bool has_corners = weighting != Weighting::kArea;
   keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);

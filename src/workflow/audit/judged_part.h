@@ -82,7 +82,7 @@ class JudgedPart {
     return own_edges_.empty() ? edges_ : own_edges_;
   }
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
-  /// Returns the number of vertices of the whole mesh. edges() uses the vertex numbers of the whole mesh.
+  /// Returns the number of vertices of the whole mesh, whose vertex numbers edges() uses.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
   /// Sets the edges of the whole mesh, which has vertex_count vertices. The edges must outlive the part. Every vertex
   /// must have at most one output.

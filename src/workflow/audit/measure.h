@@ -25,10 +25,10 @@
 
 namespace chronormal::inline internal {
 
-/// The limit below which the length of a normal does not count, relative to the largest control normal of its element.
-/// Errors of shorter normals are left out of the sums of errors. The surface nearly collapses there, and its shading
-/// mostly follows from the normals around it. If the caller sets a limit of the error (--tolerance), the limit applies
-/// to such a normal as long as the normal has a direction.
+/// The shortest length of a normal whose error counts, relative to the largest control normal of its element. Errors of
+/// shorter normals are left out of the sums of errors. The surface nearly collapses there, and its shading mostly
+/// follows from the normals around it. If the caller sets a limit of the error (--tolerance), the limit applies to such
+/// a normal as long as the normal has a direction.
 inline constexpr double kVanished = 1e-4;
 
 /// The value that stands for the error of an output whose faces have an area, but whose face normals cancel each other.
@@ -65,8 +65,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 /// and `rounding` a bound of its rounding error. Returns kNotJudged if rounding may give the true normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
-/// Returns the unit normal that a viewer renders by this rule between two stored normals. Returns (0, 0, 0) if the
-/// blended normal is zero.
+/// Returns the unit normal that a viewer renders by a rule between two stored normals. Returns (0, 0, 0) if the blended
+/// normal is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
 /// Returns the number of moments in each segment at which normals are measured. If targets are judged one by one, each
@@ -81,8 +81,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
-/// Returns the angles between the stored normals and the geometry, for the requested weighting of faces. If no
-/// weighting is requested, uses the detected weighting.
+/// Returns the angles between the stored normals and the normals of the geometry, for the requested weighting of faces.
+/// If no weighting is requested, uses the detected weighting.
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
 /// Returns the fault of a subject whose stored normals have an error above kAuditFault. If the subject has several
@@ -142,7 +142,7 @@ struct PlacedPart {
 
 /// Returns the length of the largest control normal of each element in all segments. The control normals of a segment
 /// follow from the normals at its ends and its middle. If vertices move on curved paths, the control normals belong to
-/// the parabola through these three normals, which is accurate enough for a length to compare with.
+/// the parabola through these three normals, which is accurate enough to tell which normals vanish (kVanished).
 template <class Source, class Segments>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, Segments& segments,
                                                                   PlacedPart& placed) {

@@ -21,8 +21,8 @@ namespace {
 // threads busy, and small enough for the results to take little memory.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
-// The largest number of samples in a segment that are measured by blocks. The errors of a block take 20 kB for each
-// sample.
+// The largest number of samples per segment for which outputs are measured block by block. The errors of a block take
+// 20 kB for each sample.
 constexpr std::size_t kMostSamples = 128;
 
 // A group of outputs that are measured together, and the faces from which their normals are computed.
@@ -59,7 +59,6 @@ std::vector<Block> make_blocks(const JudgedPart& part) {
   return blocks;
 }
 
-// The memory that is needed to measure a block.
 struct Scratch {
   TrianglesInMotion triangles;
   std::vector<TrianglesInMotion::Normal> faces;

@@ -26,7 +26,7 @@ namespace chronormal::inline internal {
 /// A function that returns the place (segment, time and vertex) by which messages name an error.
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
-/// The segments of a subject in a motion, in the form that measure() needs.
+/// The segments of a subject in a motion, with the functions that measure() calls.
 struct SegmentsOfRun {
   MotionStream& stream;
   std::span<const std::size_t> of_motion;  ///< indices of these segments in the motion
@@ -58,7 +58,7 @@ struct SegmentsOfRun {
   }
 };
 
-/// Measures all samples of these segments, with the same result as measure(), for viewers that compute the normals at
+/// Measures all samples of `segments`, with the same result as measure(), for viewers that compute the normals at
 /// keyframes themselves. The outputs of the part must be in the order of their elements. Errors: those of the stream
 /// and of the run.
 [[nodiscard]] Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule,

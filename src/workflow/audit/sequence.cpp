@@ -109,7 +109,8 @@ class SequenceSource {
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
-    // Limits the offset to the allowed angle, along the arc from the geometry's normal to the stored normal.
+    // Turns the direction by at most the allowed angle, along the arc from the normal of the geometry to the stored
+    // normal.
     const Vec3d side = to - dot(from, to) * from;
     const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
@@ -225,7 +226,8 @@ Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   return moves;
 }
 
-// Groups the segments by subject. A sequence is one subject, and each target is a subject.
+// Groups the segments by subject. All segments of a sequence are one subject, but each morph target is a subject of its
+// own.
 std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
   const bool is_targets = motion.kind == MotionKind::kTargets;
   std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
@@ -306,8 +308,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
 
   const Topology& topology = motion.topology;
   if (const Status status = stream.hold(0, 0); !status) return status.error();
-  // If no normals are stored for all keyframes, the viewer computes normals itself and weights faces by area. This is
-  // so even if the file of keyframe 0 stores normals with another weighting.
+  // If some keyframe has no stored normals, the viewer computes all normals itself and weights faces by area, even if
+  // the file of keyframe 0 stores normals with another weighting.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);

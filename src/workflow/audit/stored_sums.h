@@ -2,7 +2,7 @@
 /// them. Private to workflow.
 ///
 /// The deltas of many targets do not fit into the cache, so computing the sums for one set of weights takes as long as
-/// reading all deltas. For this reason the sums for several sets are computed in one pass.
+/// reading all deltas. For this reason one pass computes the sums for several sets of weights.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 

@@ -19,7 +19,7 @@ bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
 
-// A source as one viewer shows its normals through a skin. It has those functions of a source (measure.h) that
+// The source of an audit with the skin rule of one viewer. It has only those functions of a source (measure.h) that
 // error_at() calls.
 struct SeenByViewer {
   const BlendSource& source;
@@ -87,8 +87,8 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // The error that is known already for each entry of kept_, or nullptr. Viewers that play the same weights and store
-    // normals in the same way render the same normals, so only the first of such viewers is judged.
+    // For each entry of kept_, the error if it was already measured, or nullptr. Viewers that play the same weights and
+    // store normals in the same way render the same normals, so only the first of such viewers is judged.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;

@@ -1,5 +1,5 @@
-/// Declares audits that report each sample to a caller who needs more than sums, and the audit of a share of a
-/// sequence. Private to workflow.
+/// Declares audits that report each sample, for callers who need more than the sums of errors. Also declares the audit
+/// of a share of a sequence. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 

@@ -45,7 +45,8 @@ struct MeshBake {
   GrownMesh grown;  // set if the mesh has correction targets
 };
 
-// Lists the meshes that may move. The arrays of these meshes, which are read later, tell which meshes really move.
+// Lists the meshes with a target that has positions or normals. The arrays of these meshes, which are read later, tell
+// which of them really move.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
@@ -83,7 +84,6 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
                        "make them an object");
 }
 
-// Tells for each part of a mesh whether the part gets new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
@@ -107,7 +107,6 @@ void cut_gaps(MeshWeights& weights) {
     track.pieces_of_line = std::clamp<std::size_t>(kNodes / std::max<std::size_t>(1, track.size()), 1, kMostPieces);
 }
 
-// Copies facts about the plan into the report.
 void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.encoding = plan.encoding;
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
@@ -170,8 +169,8 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// The progress of a bake, as it is reported to the caller. Each target of a mesh counts twice: when the candidate for
-// its mesh is chosen, and when the target is written.
+// The progress of a bake, as the caller sees it. Each target of a mesh counts twice: once when the candidate for the
+// mesh is chosen, and once when the target is written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;
@@ -184,7 +183,6 @@ class Course {
     targets_ = targets;
     reach(first_);
   }
-  // Returns a function that reports progress while a candidate is chosen.
   [[nodiscard]] Tell of_choice() {
     return [this](std::size_t done, std::size_t total) { reach(first_ + targets_ * done / total); };
   }

@@ -57,9 +57,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has grown more than is allowed, or if too many more edges are torn beyond one of the angles
-// 10, 20 and 40 degrees, of which only the first `thresholds` count. A mean error may grow up to the tolerance, and
-// single normals may turn by the tolerance. For each hundred torn edges, one more edge may be torn.
+// Returns true if an error has grown more than is allowed. The mean error may grow up to the tolerance, and each other
+// error by the tolerance. Also returns true if many more edges are torn: for each hundred edges torn before, one more
+// may be torn. The angles 10, 20 and 40 degrees count as limits of tears, but only the first `thresholds` of them.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
@@ -69,7 +69,6 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
          after.worst > before.worst + turn;
 }
 
-// A candidate, and how the chooser has judged it.
 struct Judged {
   BakedCandidate choice;
   // The number of named viewers in which the candidate is better than the stored deltas, and the number of other
@@ -158,8 +157,8 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // Returns the number of bytes that deltas may take. If the options give a tolerance or a limit, this is the limit of
-  // bytes. Otherwise the number is in proportion to the size of the file.
+  // Returns the number of bytes that deltas may take. If the options give no tolerance and no limit, this number is in
+  // proportion to the size of the file. Otherwise it is the limit of bytes.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
@@ -170,12 +169,12 @@ class Chooser {
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    // Allows one correction target more than the estimate. If its deltas take too many bytes, fewer targets are tried.
+    // Allows one correction target more than the estimate. If the deltas take too many bytes, fewer targets are tried.
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
   // Returns true if the best candidate is accurate enough and takes at most `bytes` bytes, so that no other candidate
-  // must be tried. If a plan is requested (options_.plan), all candidates must be measured, so the result is false.
+  // needs to be tried. If a plan is requested (options_.plan), all candidates must be measured, so the result is false.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
            !options_.plan;
@@ -294,7 +293,8 @@ class Chooser {
     }
     judged.mean = choice.played.mean;
     choice.within = judged.is_affordable && choice.played.worst <= tolerance_;
-    // Named viewers must not gain less than another viewer loses, unless the caller asked for this candidate.
+    // If the mean error grows by more than the tolerance in another viewer, and falls by less in some named viewer, the
+    // candidate counts as better in no viewer, unless the caller asked for this candidate.
     const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest || (options_.tolerance && choice.within);
     if (!is_asked && most_harm > tolerance_ && most_harm > least_gain) judged.better = 0;
   }
@@ -357,8 +357,8 @@ void look_at_low_rank(const Making& making, const Candidate& own, std::size_t by
   }
 }
 
-// Tries correction targets for a mesh that no animation drives. Tries more and more of them, as long as the mean error
-// gets small enough with each step (kWorthIt).
+// Tries correction targets for a mesh that no animation drives. Tries larger and larger numbers of correction targets,
+// as long as each step reduces the mean error enough (kWorthIt).
 void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
@@ -431,7 +431,6 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
 
 ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                                  std::size_t tangent_bytes) {
-  // Reports roughly how much of the work is done.
   const auto reach = [&options](std::size_t percent) {
     if (options.progress) options.progress(percent, 100);
   };

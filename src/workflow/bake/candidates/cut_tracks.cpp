@@ -20,8 +20,8 @@ constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
 // high, because it adds up all errors as if they came at the same moment.
 constexpr double kPartOfSplines = 2;
 
-// Returns for each gap between keys an angle in radians. It is the angle by which normals turn in the middle of the
-// gap, where the error is largest, if correction weights change linearly in the gap.
+// Returns the largest angle, in radians, by which a normal turns in the middle of each gap between keys if correction
+// weights change linearly in the gap. In the middle this angle is largest.
 std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                   const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                   const VertexColumns& columns) {
@@ -53,9 +53,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     return rows;
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
-  // Calls visit(p, openness) for the n-th vertex in each pose p. The openness grows with the angle between two normals.
-  // The first is the rendered normal, and the second is this normal after the missing part of the correction weights is
-  // added.
+  // Calls visit(p, openness) for the n-th vertex in each pose p. The openness grows with the angle between two normals:
+  // the rendered normal, and this normal after the missing part of the correction weights is added.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
     thread_local std::vector<float> shown, off;
@@ -110,9 +109,9 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   return result;
 }
 
-// Returns the number of straight pieces for each gap of a LINEAR track. With these pieces, the correction weights turn
-// no normal by more than the tolerance, in radians, if the limit of pieces allows this. Raises `left` to the largest
-// angle that remains.
+// Returns the number of straight pieces for each gap of a LINEAR track. With this number, linear correction weights
+// turn no normal by more than the tolerance (radians), unless the limit of pieces is too low. Raises `left` to the
+// largest angle that remains, in radians.
 std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                      const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                      const VertexColumns& columns, double tolerance, double& left) {

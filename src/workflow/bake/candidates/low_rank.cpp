@@ -37,12 +37,12 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Errors in a fit, as parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the
-// error that 99.9 % of all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that
-// should remain after least squares.
+// Errors in a fit, as parts of the tolerance. An error below kPartOfNeed needs no correction. With singular vectors
+// alone, 99.9 % of all samples should have errors up to kPartOfSingular. After least squares, no error should be above
+// kPartOfWorst.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// Limits for a fit in which no tried number of correction targets reaches the tolerance. The fit then takes the
+// Limits for a fit that misses the tolerance with every tried number of correction targets. The fit then takes the
 // smallest number whose error is at most kNoGain times the smallest error of all tried numbers, provided that at least
 // kManyMore times as many targets were tried.
 constexpr double kNoGain = 1.05;
@@ -56,8 +56,8 @@ constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-// A correction target that is made from another correction target, whose index is `of`. Its weight is `factor` times
-// the weight of that target. If above_zero is true, negative weights become 0.
+// A correction target that is made from the correction target with the index `of`. Its weight is `factor` times the
+// weight of the other target. If above_zero is true, negative weights become 0.
 struct Share {
   std::size_t of = 0;
   double factor = 1;
@@ -151,7 +151,6 @@ PoseList poses_of(const FileInstants& all, std::span<const std::size_t> instants
   return poses;
 }
 
-// Returns the weights of the mesh's own targets in each row of a fit, (rows, targets).
 std::vector<float> own_weights(const PoseList& poses) {
   std::vector<float> result;
   for (const std::vector<double>& pose : poses) result.insert(result.end(), pose.begin(), pose.end());
@@ -197,8 +196,8 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
-// Counts the products of two weights that are not zero in the given poses. With area weights, n(w) is quadratic, so at
-// most this many terms of n(w) are missing.
+// Counts the products of two weights that are not zero in the given poses. With area weights, n(w) is quadratic, so own
+// deltas lack at most this many terms of n(w).
 std::size_t products_of(const PoseList& poses) {
   std::size_t active = 0;
   for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
@@ -206,8 +205,8 @@ std::size_t products_of(const PoseList& poses) {
   return active * (active + 1) / 2;
 }
 
-// Fits as few correction targets as the tolerance allows. The number is first estimated from some of the points. If the
-// fit is not good enough, the number is raised, and at most kFits fits are made.
+// Fits as few correction targets as the tolerance allows. The number of targets is first estimated from some of the
+// points. If the fit is not good enough, the number is raised. At most kFits fits are made.
 void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
   std::vector<std::size_t> counts;
   for (const std::size_t count : kCounts)
@@ -285,7 +284,6 @@ Cholesky gram_of_deltas(const LowRankFit& fit, std::size_t points) {
   return {std::move(matrix), extras, ridge};
 }
 
-// A vertex, and the index of its point among the points that were fitted.
 struct FittedVertex {
   std::uint32_t vertex;
   std::size_t point;
@@ -359,7 +357,6 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Computes the weights of correction targets at all nodes of the curves.
   const std::size_t extras = fit.extras();
   std::vector<double> curves(instants.poses.size() * extras);
   std::vector<char> is_row(instants.poses.size(), 0);

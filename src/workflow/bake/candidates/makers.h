@@ -1,5 +1,5 @@
-/// The makers of candidates. Each maker makes a Candidate from a Making, which is a mesh with the requirements of the
-/// bake. Private to workflow.
+/// The functions that make candidates. Each of them makes a Candidate from a Making, which is a mesh with the
+/// requirements of the bake. Private to workflow.
 ///
 /// N is the stored normal of a vertex, D the delta of a target of the mesh, and E the delta of a correction target. Own
 /// deltas are those of the mesh's own targets. "Across N" means perpendicular to N.
@@ -94,11 +94,11 @@ inline constexpr double kPartOfTracks = 0.2;
 
 // Makers of correction targets whose weights animations set directly (low_rank.cpp).
 
-/// Fits correction targets to the errors that new deltas of the mesh's own targets leave. Makes as many as the
+/// Fits correction targets to the errors that new deltas of the mesh's own targets leave. Makes as many targets as the
 /// tolerance needs, but at most making.most_extras. Vertices whose error is a small part of the tolerance are left out.
-/// If only animations count and lengths are free, own deltas are fitted to the animations too. Computes the true
-/// normals at all nodes of the weight curves; at most 480 nodes are fitted, and their normals take at most about 700 MB
-/// of memory.
+/// If only animations count and lengths are free, the deltas of own targets are fitted to the animations too. Computes
+/// the true normals at all nodes of the weight curves; at most 480 nodes are fitted, and their normals take at most
+/// about 700 MB of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
 // Makers of correction targets whose weights are quadratics of own weights, for a mesh that no animation drives

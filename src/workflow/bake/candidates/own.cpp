@@ -26,8 +26,8 @@ Candidate stored_candidate(const DeltaSource& source) {
 Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
   Candidate result;
   result.name = "own deltas";
-  // If the true normals are not quadratic in the weight, the terms of n(w) are only fitted to them. The true normal at
-  // weight 1 is more exact, so deltas are computed from this normal.
+  // If the true normals are not quadratic in the weight, the terms of n(w) are only a fit to the true normals. For this
+  // reason deltas are computed from the true normal at weight 1 instead.
   const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
   if (lengths != Lengths::kFree || is_of_truth) {
     // The deltas give the normal at weight 1 the length of N. The stored normals of an author have that length too, so

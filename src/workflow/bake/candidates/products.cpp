@@ -35,8 +35,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// The lengths that are tried for a sum of unit normals. The first is kLongestSum, and each next length is kNextSum
-// times the length before.
+// The lengths that are tried for a sum of unit normals: from kLongestSum down, each length is kNextSum times the length
+// before.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
 constexpr int kTriedSums = 31;  // the shortest sum has a length of a tenth
 // Limits for the correction targets of a pair of targets. kPartOfPairs is the error that a single correction target may
@@ -68,8 +68,6 @@ struct ProductLimits {
   double tolerance = 0;  // degrees: the largest error that should be left
 };
 
-// The deltas and correction targets of a candidate, before the weights of the correction targets are connected to
-// tracks.
 struct Products {
   std::vector<VertexVectors> own;    // deltas of each target of the mesh
   std::vector<ExtraWeight> weights;  // weights of the correction targets, without gains
@@ -99,7 +97,6 @@ class VerticesOfElements {
   std::vector<std::uint32_t> vertices_;
 };
 
-// A vertex, and the normal of its element in some pose.
 struct Asked {
   std::uint32_t vertex;
   Vec3d of_element;
@@ -133,7 +130,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// The maker of correction targets. It makes them one after the other, and adds them to the Products.
+// Makes correction targets one after the other, and adds them to the Products.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
@@ -339,8 +336,8 @@ struct Pair {
   std::size_t pose = 0;
 };
 
-// Returns the targets that are active in some pose, in ascending order. If there are too many, returns those with the
-// largest weights.
+// Returns the targets that are active in some pose, in ascending order. If more than kMostActive targets are active,
+// returns those with the largest weights.
 std::vector<std::size_t> active_targets(std::size_t targets, const PoseList& poses) {
   std::vector<double> largest(targets, 0.0);
   for (const std::vector<double>& pose : poses)
@@ -390,7 +387,6 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   PoseList poses;
   const std::size_t count = std::min(most, all_poses.size());
   for (std::size_t n = 0; n < count; ++n) poses.push_back(all_poses[n * all_poses.size() / count]);
-  // Lays out the weights of correction targets: each target has `count` values in a row, one for each pose.
   std::vector<float> weights(form.weights.size() * count);
   for (std::size_t k = 0; k < form.weights.size(); ++k) {
     const ExtraWeight& extra = form.weights[k];
@@ -401,8 +397,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // For each entry of `extra`, the sum of squared angles and the largest angle. These numbers are added up afterwards
-  // in a fixed order, so that the result does not depend on threads.
+  // For each entry of `extra`, the sum of squared angles and the largest angle. Threads write these numbers, which are
+  // added up afterwards in a fixed order, so that the result does not depend on the threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));
@@ -437,8 +433,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   return result;
 }
 
-// Removes the correction targets that turn normals least. Removes as many as together turn a normal by at most half the
-// tolerance, and as many as the limit requires.
+// Removes the correction targets that turn normals least: first as many as together turn a normal by at most half the
+// tolerance, and then as many as the limit requires.
 void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& limits, Products& form) {
   std::vector<std::size_t> order(worths.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;

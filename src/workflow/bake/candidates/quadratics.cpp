@@ -37,7 +37,8 @@ GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   return result;
 }
 
-// Returns correction targets whose vectors have lengths that viewers keep (`lengths`). Scales their weights to match.
+// Returns correction targets whose vectors have lengths that viewers keep (`lengths`). Scales the weights of the
+// targets to match the scaled vectors.
 QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses& rig, QuadraticFit::Extras extras,
                                      Lengths lengths) {
   QuadraticFit::Extras result;
@@ -68,7 +69,7 @@ QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses&
   return result;
 }
 
-// Makes drivers of correction targets whose weights are sums of terms. The tracks of such a mesh move nothing, so
+// Makes drivers of correction targets whose weights are sums of terms. The tracks of a mesh with a rig move nothing, so
 // correction targets have weight 0 in all tracks.
 ExtraDrivers drivers_of(const MeshWeights& weights, std::vector<GltfExtraTarget> sums) {
   ExtraDrivers drivers;

@@ -57,8 +57,8 @@ struct Candidate {
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
 /// Returns true if a candidate has other deltas than the file, or has correction targets.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
-/// Estimates the bytes that a candidate takes in the file. They are the bytes of its arrays of deltas, of the drivers
-/// of its correction targets, and the bytes added to the animation tracks that drive these targets.
+/// Estimates the bytes that a candidate takes in the file: its arrays of deltas, the drivers of its correction targets,
+/// and the bytes that are added to the animation tracks that drive these targets.
 [[nodiscard]] std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate);
 
 }  // namespace chronormal::inline internal

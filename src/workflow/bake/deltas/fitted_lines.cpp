@@ -26,9 +26,9 @@ constexpr double kLeastPart = 0.1;
 // The smallest length of a normal that is judged, relative to its longest term.
 constexpr double kLeastLine = 1e-4;
 // A fit pulls each delta towards the best delta that its target has alone. kRidge is the strength of this pull,
-// relative to the mean diagonal entry of the normal equations. The pull decides where the weights of two targets differ
-// by only a thousandth in all poses, because the poses then do not tell the two deltas apart. Weights below
-// kLeastWeight tell nothing about a delta.
+// relative to the mean diagonal entry of the normal equations. If the weights of two targets differ by only a
+// thousandth in all poses, the poses do not tell the two deltas apart, and the pull decides. Weights below kLeastWeight
+// tell nothing about a delta.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
 // The error in radians up to which an element is not fitted. Directions are rounded to a third of this error.
 constexpr double kLeastError = 1e-4;
@@ -57,7 +57,6 @@ Vec3d direction(const Rounded& r) {
   return unit({static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
 }
 
-// An element, its active targets, and their deltas.
 struct Element {
   std::uint32_t index = 0;
   Vec3d base;  // n(0) of the element with length 1, or zero
@@ -248,8 +247,8 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // An element without a normal in the base has no direction from which a delta could start, so its delta is the true
-    // normal at weight 1.
+    // An element without a normal in the base has no direction to which a delta could be added, so its delta is the
+    // true normal at weight 1.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }

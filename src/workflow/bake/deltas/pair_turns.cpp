@@ -16,8 +16,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kHeldNormals is the largest number of normals in memory at a time. If the elements have more normals in all poses,
-// only kSomeElements of the elements are in memory at a time.
+// kHeldNormals is the largest number of normals in memory at a time. If all elements have more normals than this in all
+// poses together, only kSomeElements elements are in memory at a time.
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
 // The number of entries of terms that are in memory at a time.
 constexpr std::size_t kHeldEntries = 1000000;
@@ -32,7 +32,7 @@ constexpr std::size_t kPairBlock = 1024, kElements = 16;
 // 1, and the correction target removes the part by which the square term is too large between the weights 0 and 1.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
-// Returns the factor of a correction target's term in a pose.
+// Returns the factor by which the term of a correction target is multiplied in a pose.
 double weight_of_term(const ExtraWeight& extra, const std::vector<double>& pose) {
   const double of_extra = extra.at(pose[extra.i], pose[extra.j]);
   return extra.i == extra.j ? -of_extra : of_extra;

@@ -1,7 +1,7 @@
 // Plans a bake. The terms of each single target are always written, and only pairs of targets are chosen. Each pair
-// that is active at the same time in some pose is a candidate for a correction target. The worth of a candidate is the
-// angle by which normals turn without it, in poses of the file. The candidates with the smallest worth are left out, as
-// many as together turn a normal by at most the tolerance.
+// that is active at the same time in some pose may get a correction target. The worth of a pair is the angle by which
+// normals turn without this target, in poses of the file. The pairs with the smallest worth are left out, as many as
+// together turn a normal by at most the tolerance.
 #include "workflow/bake/deltas/plan.h"
 
 #include <algorithm>

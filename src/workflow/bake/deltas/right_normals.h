@@ -33,8 +33,8 @@ class RightNormals {
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
   /// Returns the stored base normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Return the normals of all elements, or of some elements, in a pose. These normals are not yet rotated as the
-  /// author's base normals are rotated from the geometry. Take O(vertices + elements).
+  /// Return the normals of all elements, or of some elements, in a pose. The rotation from the geometry to the author's
+  /// base normals is not yet applied. Take O(vertices + elements).
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
@@ -84,7 +84,6 @@ class RightNormals {
     std::vector<std::uint32_t> elements;
     std::vector<std::size_t> of_vertices;
   };
-  // Returns n(w) of some elements.
   [[nodiscard]] std::vector<Vec3d> normals_of(std::span<const double> pose,
                                               std::span<const std::uint32_t> elements) const;
   // Returns the unit normals of some elements, or (0, 0, 0) for a normal without a direction.

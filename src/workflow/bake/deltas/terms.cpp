@@ -25,8 +25,8 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// Returns a function that returns the position of a vertex at t, on the straight line from its position in the base (t
-// = 0) to its position in `to` (t = 1).
+// Returns a function for the position of a vertex at t, on the straight line from its position in the base (t = 0) to
+// its position in `to` (t = 1).
 auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
   return [&set, &to, t](std::uint32_t v) {
     const float* const from = set.base.data() + 3 * std::size_t{v};
@@ -238,7 +238,8 @@ Vec3d VertexTerms::turn(const Vec3d& v) const noexcept {
 
 Vec3d VertexTerms::end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept {
   if (max_abs(base_) > 0) return length_ * turn(delta);
-  // The best single delta begins at the limit of the true direction at weight 0, but a delta in the file begins at N.
+  // The best single delta starts from the true direction at weight 0, but a delta in the file starts from the stored
+  // normal N.
   return length_ * (unit_normal_at(normals, 0).vector + delta - stored_);
 }
 

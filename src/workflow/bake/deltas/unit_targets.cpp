@@ -62,8 +62,8 @@ std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& ve
   const Vec3d middle = base + 0.5 * vector;
   const double room = 1 - dot(middle, middle);
   if (!(room >= 0)) return std::nullopt;
-  // The two unit vectors lie on opposite sides of `middle`, at equal distances in any direction perpendicular to it.
-  // The direction is chosen for which the largest component of the two deltas is smallest.
+  // The two unit vectors lie on opposite sides of `middle`, at equal distances in any direction perpendicular to
+  // `middle`. The chosen direction makes the largest component of the two deltas smallest.
   const Vec3d x = any_perpendicular(max_abs(middle) > 0 ? unit(middle) : Vec3d{1, 0, 0});
   const Vec3d y = max_abs(middle) > 0 ? cross(unit(middle), x) : Vec3d{1, 0, 0};
   std::optional<std::array<Vec3d, 2>> best;

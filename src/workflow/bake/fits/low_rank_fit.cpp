@@ -20,13 +20,14 @@ constexpr std::size_t kPointBlock = 16;  // the number of points that one task h
 constexpr std::size_t kSampledPoints = 1500;
 // A point (vertices with the same normal) has the weight 1 / length in the fit. The length is the 2 % quantile of the
 // lengths of its normals, but at least kShortest, and at least kPartOfLack times the length of its missing vectors
-// (right normals minus shown normals).
-// Without the two limits, a few points with very short normals would dominate all others.
+// (right normals minus shown normals). Without the two limits, a few points with very short normals would dominate all
+// others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Errors of points, as parts of the tolerance. Points with an error beyond kPartThatCounts count more. Points with an
-// error beyond kPartToRefit get a fit of their own.
+// Errors as parts of the tolerance. Points with an error beyond kPartThatCounts count more. Points with an error beyond
+// kPartToRefit get a fit of their own, in which an instant with the error kPartOfBad counts twice as much as an instant
+// without error.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
 // The limit of multiplications in the fits of all single points. If there are many correction targets, each fit takes

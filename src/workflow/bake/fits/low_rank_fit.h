@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// An instant between rows. The values at this instant follow from the values of three rows by a parabola.
+/// An instant between rows. A parabola through the values of three rows gives the values at this instant.
 using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {

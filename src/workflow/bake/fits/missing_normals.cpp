@@ -50,7 +50,7 @@ std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const
     if (is_new) points.emplace_back();
     points.back().push_back(vertex);
   }
-  // Sorts points by their first vertex, so that points near each other in the file are near each other in the list.
+  // Sorts points by their first vertex, so that points that are near each other in the file stay so in the list.
   std::sort(points.begin(), points.end());
   return points;
 }

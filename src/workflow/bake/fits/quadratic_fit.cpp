@@ -24,8 +24,8 @@ constexpr std::size_t kQuadraticPoints = 8000;
 // with more weights and products would take too long.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Angles as parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which
-// a normal may turn if an entry of a delta is left out.
+// Angles as parts of the tolerance. An error below kPartOfNeed needs no correction. An entry of a delta is left out if
+// this turns a normal by at most kPartOfEntry.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
 // The shortest length of a normal in the fit, relative to n(0). Shorter normals count as if they had this length,
 // because they can hardly be fitted.
@@ -72,7 +72,6 @@ VertexColumns columns_of_points(std::span<const PointVertices> points, const std
   return by_vertex(columns, first);
 }
 
-// The points that belong to each element, one list after the other.
 struct PointsOfElements {
   PointsOfElements(std::span<const PointVertices> points, const GltfShading& shading)
       : first(shading.groups.size() + 1, 0), points_(points.size()) {
@@ -236,7 +235,6 @@ void QuadraticFit::leave_out_small(const RigPoses& rig) {
   }
 }
 
-// Computes the weights of correction targets in the poses of the fit.
 void QuadraticFit::evaluate() {
   weights_.assign(missing_.rows() * padded_, 0.0F);
   parallel_each(missing_.rows(), kQuadraticBlock, [&](std::size_t r) {

@@ -14,8 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// The distribution of errors as a histogram. Each factor of two has sixteen bins, so an error is known to a sixteenth
-/// of its value.
+/// The distribution of errors as a histogram. Each factor of two in the error has sixteen bins, so an error is known to
+/// a sixteenth of its value.
 struct ErrorSpread {
   static constexpr std::size_t kBins = 320;
 

@@ -24,8 +24,8 @@ constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 // The largest number of errors (of a vertex in a pose) that are in memory at the same time.
 constexpr std::size_t kMostErrors = 4000000;
 
-// Returns the viewer without two kinds of rounding that must not decide which candidate is chosen. Rounding to half
-// floats has too small an effect, and rounding to a few bits is done by compressors and not by the viewer.
+// Returns the viewer without two kinds of rounding, because they must not decide which candidate is chosen. Rounding to
+// half floats has too small an effect, and rounding to a few bits is done by compressors and not by the viewer.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
@@ -140,8 +140,8 @@ class Sums {
   std::vector<float> planes_;
 };
 
-// Returns the edges that have at least one end in a list of vertices. An end is the index of its vertex in the list, or
-// an index beyond the list if the vertex is not in the list.
+// Returns the edges that have at least one end in a list of vertices. The result gives each end as the index of its
+// vertex in the list, or as an index beyond the list if the vertex is not in the list.
 std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<const std::uint32_t> vertices,
                                   std::size_t vertex_count) {
   const auto none = static_cast<std::uint32_t>(vertices.size());

@@ -13,7 +13,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
-// kNearParabola is the largest allowed distance between a parabola and the square of a weight. The distance is measured
+// The largest allowed distance between the square of a weight and the parabolas that approximate this square, measured
 // at kPlacesOfPiece places of each piece.
 constexpr double kNearParabola = 0.002;
 constexpr int kPlacesOfPiece = 4;

@@ -96,7 +96,7 @@ struct ExtraDrivers {
   PoseList rest;       ///< for curves, the weights in the poses that the file stores (MeshWeights)
   TrackPieces pieces;  ///< set for LINEAR tracks that stay LINEAR; others become cubic splines
   /// The tolerance of cubic splines, an angle in radians. Splines get more keys until the errors of formulas turn no
-  /// normal by more than this angle. If it is infinite, splines get no more keys.
+  /// normal by more than this angle. If this angle is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }

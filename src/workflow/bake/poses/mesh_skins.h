@@ -23,7 +23,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin);
 
 /// Reads the skins of all nodes of a mesh into weights.skins, as far as they deform the given vertices. Leaves out a
-/// skin that cannot be read; an audit reports the reason.
+/// skin that cannot be read, because an audit reports the reason.
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights);
 

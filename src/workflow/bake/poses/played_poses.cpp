@@ -1,5 +1,5 @@
-// Chooses the times of tracks at which a bake is judged. If there are too many, chooses the keys and tracks that show
-// most.
+// Chooses the times of tracks at which a bake is judged. If there are too many, prefers the keys and tracks in which
+// weights, or products of two weights, are largest.
 #include "workflow/bake/poses/played_poses.h"
 
 #include <algorithm>
@@ -119,8 +119,8 @@ std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std
 
 namespace {
 
-// Positions in a gap between two keys at which a track is judged, from 0 to 1. If fewer positions are used, the first
-// ones of this list are taken.
+// Positions in a gap between two keys at which a track is judged, from 0 to 1. If fewer positions are used, they are
+// the first of this list.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
 // Returns at most `room` times of one track, in seconds. The times are at the telling keys of the track and after these

@@ -42,9 +42,9 @@ struct PlayedPose {
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
 /// Returns the poses that a viewer plays from the tracks of a mesh, in order. Leaves out a pose that looks the same as
-/// the last one. There are poses at each telling key, and at several times up to the next telling key. If there would
-/// be more than `most` poses, takes fewer times after each key, and then fewer keys. A track gets poses in proportion
-/// to its number of telling keys, but at least one.
+/// the pose before. There are poses at each telling key, and at several times up to the next telling key. If there
+/// would be more than `most` poses, takes fewer times after each key, and then fewer keys. A track gets poses in
+/// proportion to its number of telling keys, but at least one.
 ///
 /// If nodes have skins, each track is judged with each of these skins: at its own keys, at keys of the joints, and at
 /// times between them. If these are more than `most` poses, some of them are chosen in the same way. The skins must

@@ -31,7 +31,6 @@ double error_of_clamping(const std::vector<float>& values) {
   return 0;
 }
 
-// Return the slopes of a cubic at its two ends, per second.
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
@@ -61,8 +60,8 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Returns true if the weight of every correction target is linear in time between all keys. This is so if one of the
-// two factors of its product is constant between the keys, or if the weight is not a product.
+// Returns true if the weight of every correction target is linear in time between all keys. A weight is linear if it is
+// no product of two weights, or if one of the two weights is constant between the keys.
 bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
@@ -122,7 +121,6 @@ class TrackExtender {
         most_keys_(most_keys),
         spline_(track.targets + extras.size()) {}
 
-  // Returns the track, extended by the weights of correction targets, as a cubic spline.
   ExtendedTrack spline() {
     ExtendedTrack result;
     result.interpolation = GltfInterpolation::kCubicSpline;

@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kAreaBlock = 4096;  // the number of elements in a block
-// The number of faces in a block, if the areas of all faces are computed first.
+// The number of faces in a block, if the areas of all faces are computed before the sums.
 constexpr std::size_t kAreaFaces = 8 * kAreaBlock;
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {

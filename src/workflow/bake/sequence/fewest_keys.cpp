@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kKeyBlock = 128;
 
-// An instant: a segment, and the time t in this segment, from 0 to 1.
 struct Instant {
   std::size_t segment = 0;
   double t = 0;
@@ -123,7 +122,6 @@ class LineJudge {
     for (const auto& flags : left_out_) count += static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
     return count;
   }
-  // Frees the data of all segments before `segment`.
   void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
 
  private:

@@ -92,8 +92,8 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Returns elements as HarmlessElements, without counting deltas beyond 1. Is used for encodings that do not limit
-// deltas for compressors.
+// Wraps elements in HarmlessElements, without counting deltas beyond 1. Encodings that do not limit deltas for
+// compressors use this function.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
@@ -226,7 +226,7 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Chooses the segments that get a bend. If viewers support fewer targets (`room`) than there are segments, chooses the
+// Chooses the segments that get a bend. If viewers support fewer bends (`room`) than there are segments, chooses the
 // segments in which bends reduce errors most.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
