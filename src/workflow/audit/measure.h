@@ -102,7 +102,8 @@ void finish(Audit& result);
 //     place(segment, t, positions)   writes the positions of the part; returns false if they are as in the last call
 //     forget()                       makes the next call of place() return true
 //     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
-//     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
+//     begin(start, end)              gets the normals of elements at both ends of a segment, before its samples are
+//                                    measured (is called if kNeedsEnds is true)
 //     show()                         is called after each placement, before shown()
 //     shown(first, normals)          writes the rendered normals of outputs from number `first` on; zero if no sum
 //                                    exists

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t kSkinnedBlock = 1024;
 
-// Returns the angle in degrees between the true normal `before`, as the skin transforms it, and `after`, the normal of
-// the skinned surface. Returns nothing if `after` is nearly zero.
+// Returns the angle in degrees between two normals: the true normal `before` after the skin has transformed it, and
+// `after`, the normal of the skinned surface. Returns nothing if `after` is nearly zero.
 std::optional<double> degrees_at(const MeshSkin& skin, std::size_t vertex, const Vec3d& before, const Vec3d& after) {
   const AffineTransform matrix = skin.of_vertex(vertex);
   const NormalMatrix exact = normal_matrix(matrix);

@@ -1,5 +1,5 @@
-/// Adds up the stored normals of some outputs and their deltas, as the specification requires or as a viewer stores
-/// them. Private to workflow.
+/// Adds up the stored normals and deltas of some outputs, as the specification requires or as a viewer stores them.
+/// Private to workflow.
 ///
 /// The deltas of many targets do not fit into the cache, so computing the sums for one set of weights takes as long as
 /// reading all deltas. For this reason one pass computes the sums for several sets of weights.

@@ -64,7 +64,8 @@ struct AuditSample {
 
 using AuditWatch = std::function<void(const AuditSample&)>;
 
-/// A mesh as its author made it, with its true normals. It must not be moved, because `truth` refers to `shading`.
+/// A mesh as its author made it, with its true normals. The object must not be moved, because `truth` refers to
+/// `shading`.
 struct AuthorOfMesh {
   AuthorOfMesh(GltfShading read, std::optional<Weighting> asked)
       : shading(std::move(read)), truth(author_truth(shading, asked)), weighting(find_authored_weighting(shading)) {}

@@ -92,8 +92,8 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
 }
 
 // Finds the true normals. If the options give a weighting, the true normals are sums by this weighting; otherwise they
-// follow the normals of the author. If base normals are recomputed, the author's normals do not count, and area is the
-// weighting unless the options give one.
+// follow the normals of the author. If base normals are recomputed, the author's normals do not count, and faces are
+// weighted by area unless the options give a weighting.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);

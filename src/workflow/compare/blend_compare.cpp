@@ -291,8 +291,8 @@ Status check(const BlendCompareOptions& options) {
 }
 
 // Lists the numbers of targets that are active at the same time. Schemes are compared separately for each number. If
-// `wanted` is not 0, the list has only this number; otherwise it has the numbers in kActive that are below the
-// number of targets, and the number of targets.
+// `wanted` is not 0, the list has only this number. Otherwise the list has the numbers in kActive that are below the
+// number of targets, and then the number of targets.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;
@@ -348,7 +348,6 @@ BlendSubject describe(const Subject& subject, ElementKind kind) {
   return result;
 }
 
-// Lists the vertices that have a stored normal and belong to a face.
 std::vector<Output> outputs_of(const GltfShading& shading) {
   std::vector<Output> result;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)
@@ -383,7 +382,6 @@ bool has_stored_normals(const GltfMesh& mesh) {
                      [](const GltfPrimitive& p) { return p.has_faces() && p.has_normals; });
 }
 
-// Lists the targets of a mesh that are not correction targets.
 std::vector<std::size_t> own_targets(const GltfMesh& mesh) {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < mesh.target_count; ++k) {

@@ -52,7 +52,7 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-// The results of one scheme on one block, or on all blocks of a segment that were added.
+// The results of one scheme on one block, or the sum of such results over the blocks of a segment.
 struct Tally : SchemeTally {
   std::vector<Quality> samples;                // the errors at each sample; set only if samples are kept
   std::vector<float> prepare_ns, evaluate_ns;  // nanoseconds per element, one value for each block
@@ -104,8 +104,8 @@ class Elements {
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Computes the control normals of all faces for the segments from `first` to `last`. Keeps them, because a face can
-  // belong to many groups.
+  // Computes the control normals of all faces for the segments from `first` to `last`. Keeps the results, because a
+  // face can belong to many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
@@ -257,7 +257,6 @@ CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, 
   return all;
 }
 
-// Returns a checksum of the options of a comparison and of the names of the schemes.
 std::uint32_t checksum_of_options(const CompareOptions& options, const std::vector<std::string>& names) {
   NumberChecksum sum;
   for (const std::string& name : names) sum.add(name);
@@ -385,7 +384,6 @@ Comparison without_results(const Motion& motion, const CompareOptions& options, 
   return comparison;
 }
 
-// Makes the elements whose normals are compared.
 Result<Elements> elements_of(MotionStream& stream, const CompareOptions& options) {
   const Topology& topology = stream.motion().topology;
   if (options.elements.kind == ElementKind::kFaces) return Elements(topology);

@@ -19,8 +19,8 @@ struct SchemeTally {
   CertifiedError certified = {};
 };
 
-/// The results of all schemes in one segment: one entry for each row of the comparison, and then one for `linear` if no
-/// row shows it.
+/// The results of all schemes in one segment: one entry for each row of the comparison, and then an entry for `linear`
+/// if no row shows this scheme.
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;

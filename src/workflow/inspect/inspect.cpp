@@ -67,7 +67,7 @@ struct FaceTally {
     }
     marks[face].fetch_or(mark, std::memory_order_relaxed);
   }
-  // Adds the count of one problem for faces that follow in the same keyframe or segment.
+  // Adds the tally of faces that follow these faces in the same keyframe or segment.
   void add(const FaceTally& next) {
     if (count == 0) {
       first_face = next.first_face;
@@ -98,7 +98,7 @@ struct Box {
   [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
 };
 
-// The findings about vertices in one block of a segment, or in all blocks of the segment that were added.
+// The findings about vertices in one block of a segment, or in several blocks together.
 struct VertexTally {
   Box from, to;  // boxes of those keyframes at both ends that this segment judges
   Largest motion;
@@ -125,7 +125,7 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// The findings about faces in one block of a segment, or in all blocks of the segment that were added.
+// The findings about faces in one block of a segment, or in several blocks together.
 struct SegmentTally {
   KeyframeTally from, to;  // results of those keyframes at both ends that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
@@ -246,7 +246,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    // Finds a collapse that is not at an end of the segment: there are normals before and after it.
+    // Finds a collapse that is not at an end of the segment, so that there are normals before and after the collapse.
     return each.before != Vec3d{} && each.after != Vec3d{};
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
@@ -295,8 +295,8 @@ void inspect_still_faces(const Segment& segment, IndexRange faces, double most, 
                         marks);
 }
 
-// Returns the range of faces or vertices in the block with this number, if there are `count` of them in all. The range
-// is empty for numbers beyond the last block.
+// Returns the range of faces or vertices in the block with this number, if there are `count` faces or vertices in all.
+// The range is empty for numbers beyond the last block.
 IndexRange block_of(std::size_t number, std::size_t count) {
   const std::size_t first = std::min(number * kBlock, count);
   return {first, std::min(kBlock, count - first)};
@@ -337,8 +337,8 @@ Result<Inspection> inspect(MotionStream& stream,
     }
   }
 
-  // Assigns each keyframe to the first segment that begins or ends with it, so that it is judged once. A keyframe
-  // without such a segment is judged as a mesh at rest.
+  // Assigns each keyframe to the first segment that begins or ends with it, so that each keyframe is judged once. A
+  // keyframe without such a segment is judged as a mesh at rest.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
   for (std::size_t s = segment_count; s > 0; --s) {
@@ -358,8 +358,8 @@ Result<Inspection> inspect(MotionStream& stream,
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
   std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
   std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
-  // Maps an index to two keyframes. Indices of segments come first, and have the keyframes at both ends of the segment.
-  // They are followed by the keyframes that no segment judges, which have the same keyframe twice.
+  // Maps an index to two keyframes. The indices of segments come first, and belong to the keyframes at both ends of the
+  // segment. The indices after them belong to keyframes that no segment judges, and have the same keyframe twice.
   const auto moves = [&](std::size_t s) { return s < segment_count; };
   const auto keys_of = [&](std::size_t s) {
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};

@@ -29,8 +29,8 @@ std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns how often faces were reported, such as ", 30 times altogether", if some face is reported more than once.
-// Otherwise returns an empty text.
+// Returns the number of reports, such as ", 30 times altogether", if some face is reported more than once. Otherwise
+// returns an empty text.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times altogether" : "";
 }

@@ -16,7 +16,7 @@ std::string json_text(const Json& json) {
 
 std::string with_items(std::string text, const std::string& name, std::size_t count,
                        const std::function<Json(std::size_t)>& item, bool is_indented) {
-  // Finds the empty list by its text. Quotes inside strings are escaped, so this text cannot occur inside a string.
+  // Finds the empty list by its text, which cannot occur inside a string because quotes are escaped there.
   const std::string list = '"' + name + (is_indented ? "\": []" : "\":[]"), margin(is_indented ? 4 : 0, ' ');
   const std::size_t at = text.find(list);
   if (at == std::string::npos || count == 0) return text;

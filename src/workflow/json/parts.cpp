@@ -249,7 +249,6 @@ SegmentErrors read_measured(const JsonView& segment) {
   return found;
 }
 
-// Reads the JSON text of the result of one segment.
 template <class Read>
 auto read_segment(std::string_view text, const std::string& name, const Read& read)
     -> Result<decltype(read(std::declval<const JsonView&>()))> {

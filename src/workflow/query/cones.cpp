@@ -1,4 +1,4 @@
-// Answers the query `cones`. It returns a cone that contains every normal of a face during a motion, and bounds of
+// Answers the query `cones`. The answer has a cone that contains every normal of a face during a motion, and bounds of
 // meshlets for culling that hold for the whole motion.
 
 #include "chronormal/analysis/cones.h"

@@ -13,13 +13,12 @@
 namespace chronormal {
 namespace {
 
-// An interval of t with ends that are not exactly known. It begins between the two numbers in `from`, and ends between
-// the two numbers in `to`.
+// An interval of t with ends that are not exactly known. The interval begins between the two numbers in `from`, and
+// ends between the two numbers in `to`.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-// A face, vertex or corner that shows its front, and the interval of t in which it shows its front.
 struct Front {
   std::size_t element = 0;
   Interval when;

@@ -35,8 +35,8 @@ namespace chronormal::inline internal {
                                   "the answer for every " + std::string(what) + " of every segment");
 }
 
-/// The vertices or corners about whose normals the caller asks. Each output has a vertex, and an element. The element
-/// is the group of faces that determine its normal.
+/// The vertices or corners about whose normals the caller asks. Each output has a vertex and an element. The element is
+/// the group of faces that determine the normal of the output.
 class AskedOutputs {
  public:
   /// Groups the corners of a motion into elements, as the options tell. Errors: those of make_groups().
@@ -64,8 +64,8 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// A check that an answer stays within the limit of its size while it grows, for answers whose length is not known
-/// before. The written answer may be slightly larger, so the writer checks the size once more.
+/// Checks, while an answer grows, that the size of the answer stays within the limit. Serves answers whose length is
+/// known only at the end. The written answer may be slightly larger, so the writer checks the size once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}

@@ -1,5 +1,5 @@
 // Answers the query `shutter`: the normal that a renderer should use while the shutter is open. Also returns the error
-// of interpolating between the normals at both ends, which is the usual way.
+// of the usual way, which interpolates between the normals at both ends.
 
 #include "chronormal/analysis/cones.h"
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kNone = kNoReportElement;
 
-// The faces of a part. Each face is a range of consecutive triangles.
+// The faces of a part. Each face is a range of consecutive triangles of the part.
 struct Faces {
   explicit Faces(const ModelPart& part) {
     const std::size_t triangles = part.triangles.size() / 3;
@@ -24,7 +24,6 @@ struct Faces {
     first.push_back(triangles);
   }
   [[nodiscard]] std::size_t count() const noexcept { return first.size() - 1; }
-  // Returns the corners of all triangles of a face.
   [[nodiscard]] std::span<const std::uint32_t> corners(const ModelPart& part, std::size_t face) const {
     return std::span(part.triangles).subspan(3 * first[face], 3 * (first[face + 1] - first[face]));
   }
@@ -71,7 +70,6 @@ void for_terms(const ModelPart& part, const Use& use) {
   for (std::uint32_t c = 0; c < truth.corners.size(); ++c) use(c, part.element[truth.corners[c]]);
 }
 
-// Returns for each corner the index of its polygon.
 std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   std::vector<std::uint32_t> result;
   result.reserve(truth.corners.size());
@@ -93,13 +91,12 @@ ListsOfElements vertices_of_truths(const ModelPart& part) {
           }};
 }
 
-// Marks of the faces, vertices and elements of a part that are kept.
 struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
 
-// Keeps the elements around the worst places, one ring of neighbours after the other, until their faces have
-// most_vertices vertices. The elements of the worst places themselves are always kept.
+// Keeps the elements around the worst places, one ring of neighbours after the other, until the faces of the kept
+// elements have most_vertices vertices. The elements of the worst places themselves are always kept.
 Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
   const ModelPart& part = model.parts[number];
   const Faces faces(part);

@@ -83,8 +83,8 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
     ModelMotion::Scheme& scheme = motion.schemes.emplace_back();
     scheme.name = row.scheme;
     for (std::size_t i = 0; i < motion.at.size(); ++i) {
-      // Finds sample i of the audit in the comparison. It is sample i % samples of its segment, because an audit judges
-      // segment after segment.
+      // In the comparison, sample i of the audit is sample i % samples of its segment, because an audit judges segment
+      // after segment.
       const Quality& quality = row.samples[motion.segments[i] * samples + i % samples];
       scheme.worst.push_back(static_cast<float>(quality.max * kDegreesPerRadian));
       scheme.mean.push_back(static_cast<float>(quality.mean() * kDegreesPerRadian));

@@ -19,8 +19,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// If a page is still too large after its arrays were thinned out, they are thinned out again, to kShare times the bytes
-// of the last attempt. The last attempt is the first one below kLeastShare of the bytes that should fit.
+// If a page is still too large after its arrays were thinned out, the arrays are thinned out again, each time to kShare
+// times the bytes of the attempt before. The attempts end below kLeastShare of the bytes that should fit.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
@@ -43,7 +43,6 @@ Result<NamedComparison> compare_schemes(Input& input, const Motion& motion, cons
   return NamedComparison{input.name(), std::move(compared).value(), std::move(names).value()};
 }
 
-// Returns the last component of a path.
 std::string without_folders(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
   return slash == std::string::npos ? name : name.substr(slash + 1);
@@ -132,7 +131,7 @@ std::string head_of(const Report& report) {
 }
 
 // Returns the size in bytes of a page: the template with the container inserted. The container has `packed` bytes after
-// compression, and takes more in base64.
+// compression, and takes a third more in base64.
 std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
   constexpr std::size_t kElement = 128;
   return options.template_bytes + kElement + (packed + 2) / 3 * 4;

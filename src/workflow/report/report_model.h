@@ -46,8 +46,8 @@ struct ModelShown {
   std::vector<ModelVectors> targets;  ///< deltas of each target
 };
 
-/// The author's offset of an element: how the author's normal differs from the sum of face normals. It is measured in a
-/// frame that moves with the surface (truth/offset_frame.h).
+/// The author's offset of an element: how the author's normal differs from the sum of face normals. The offset is
+/// measured in a frame that moves with the surface (truth/offset_frame.h).
 struct ModelOffset {
   std::uint32_t element = 0;
   /// True if the stored normal points to the side of the surface opposite to the sum of face normals.

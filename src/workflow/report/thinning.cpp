@@ -68,7 +68,6 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
 // Returns the number of bytes that are left of `most` after `taken` bytes are used, or 0 if `taken` is larger.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
-// Lists the samples of a motion that belong to worst places.
 std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t part, std::size_t motion) {
   std::vector<std::size_t> samples;
   for (const ReportPlace& place : model.worst)
@@ -97,8 +96,8 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     if (s > 0) keep(s - 1);
   }
   const std::size_t have = static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
-  // Counts the segments that fit into the limit of keyframes. In a sequence, a segment away from others needs two
-  // keyframes. In targets, all segments share the base, so each segment needs only one more keyframe.
+  // Counts the segments that fit into the limit of keyframes. In a sequence, a segment without kept neighbours needs
+  // two keyframes. In targets, all segments share the base, so each segment needs only one more keyframe.
   const std::size_t room = left(most, have) / (model.kind == "sequence" ? 2 : 1);
   for (std::size_t n = 0; n < room; ++n) keep(n * segments / room);
 

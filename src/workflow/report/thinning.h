@@ -1,7 +1,7 @@
 /// Leaves out data of a report that would make the report too large. Private to workflow.
 ///
 ///     keyframes   Some segments are left out, evenly over the motion. Worst places keep the keyframes of their
-///                 segments and of the segments beside these.
+///                 segments and of the neighbouring segments.
 ///     samples     In glTF files, samples are left out, evenly over each motion. Worst places keep their samples.
 ///     triangles   Triangles far from the worst places become fewer, by quadrics (Garland and Heckbert 1997, as in
 ///                 meshoptimizer), and are not judged. Triangles around the worst places stay, as long as half of the

@@ -41,7 +41,6 @@ class WatchedMotions {
   class Weights {
    public:
     void add(std::span<const double> of_sample);
-    // Returns the collected weights, and leaves this object empty.
     [[nodiscard]] ModelWeights take();
 
    private:

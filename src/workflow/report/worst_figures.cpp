@@ -49,7 +49,7 @@ Vec3d value_at(const std::vector<float>& values, std::size_t i) {
           static_cast<double>(values[3 * i + 2])};
 }
 
-// Returns the vector that a list has for a vertex, or nothing if it has none.
+// Returns the vector of a vertex in a list, or nothing if the list has no vector for the vertex.
 std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex) {
   if (vectors.is_dense) return value_at(vectors.values, vertex);
   const auto found = std::lower_bound(vectors.vertices.begin(), vectors.vertices.end(), vertex);

@@ -32,7 +32,7 @@ namespace chronormal::inline internal {
 ///                rows into the same .npy or .npz file, or writes its .ply and .obj files. The first process returns
 ///                the summary of all processes, and each other process its own summary.
 ///     journal    Each row of a .npy file gets a record in the journal. The file has the name OUT.partial until it is
-///                complete. A row is not computed again if the journal of an earlier run has it and the file has it
+///                complete. A row is not computed again if the journal of an earlier run and the file have this row
 ///                with the same checksum. The caller removes the journal.
 ///
 /// Errors: also the errors of the journal; kUsage for a journal if the output has another format or is a stream;

@@ -179,7 +179,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  // Counts no normals without a direction here. The code that writes the normals counts them.
+  // Does not count normals without a direction, because the code that writes the normals counts them.
   curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
@@ -204,8 +204,8 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // The worst drift of an element so far. Drift is never negative, so the first element is the worst until another
-  // element has more drift.
+  // The worst drift of an element so far. Drift is never negative, so the search can begin with drift 0 at the first
+  // element.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;

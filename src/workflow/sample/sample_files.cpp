@@ -134,7 +134,6 @@ class ArrayFile {
 
   // Continues the .npy file of an earlier run. `checksum` is the checksum of the bytes that the file already has.
   void go_on(std::uint32_t checksum) { checksum_ = checksum; }
-  // Returns the checksum of the bytes that the .npy file has so far.
   [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
   // Appends the text with which the file of a shard ends, after the last row.
   [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
@@ -151,7 +150,7 @@ class ArrayFile {
     npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
-  // Ends the work on the shared file in a process that is not the first.
+  // Ends the work on the shared file. All processes except the first call this function.
   [[nodiscard]] Status seal() { return file_->seal(); }
   [[nodiscard]] Status finish_joined() { return file_->finish(); }
 

@@ -19,8 +19,8 @@
 
 namespace chronormal::inline internal {
 
-/// The largest length, in bytes, of the text at the end of a shard's file. A keyframe takes less than 40 bytes of the
-/// text.
+/// The largest length, in bytes, of the text at the end of a shard's file. The text has less than 40 bytes for each
+/// keyframe.
 inline constexpr std::uint64_t kLongestEndOfPart = std::uint64_t{1} << 28;
 
 struct SamplePart {

@@ -50,8 +50,7 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work that this run does. If there is no value, the run does all work, and writes no part for
-  /// `merge`.
+  /// The share of the work that this run does. Without a value, the run does all work, and writes no part for `merge`.
   std::optional<Shard> shard = {};
   /// The processes that have the other shares, or nullptr if this process does not communicate with others.
   const Peers* peers = nullptr;
@@ -112,8 +111,8 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// Processes the segments of a stream as over() does, but reports no progress. Called before the run, to find facts
-  /// about all segments.
+  /// Processes the segments of a stream as over() does, but reports no progress. Commands call this function before the
+  /// run, to find facts about all segments.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
                                         std::size_t at_once, const Work& work) {

@@ -31,9 +31,9 @@ struct Shard {
   [[nodiscard]] bool is_all() const noexcept { return count == 1; }
 };
 
-/// The processes that do one task together. Each process has its own shard. They exchange texts and numbers through the
-/// program, for example by MPI. Every process makes the same calls in the same order. A process that fails makes no
-/// more calls, and its program must end the other processes.
+/// The processes that do one task together. Each process has its own shard. The processes exchange texts and numbers
+/// through the program, for example by MPI. Every process makes the same calls in the same order. A process that fails
+/// makes no more calls, and its program must end the other processes.
 struct Peers {
   /// Waits until every process has called this function. In the process of the first shard, returns the texts of all
   /// shards, in order. In all other processes, returns nothing.
@@ -49,9 +49,9 @@ struct Peers {
 /// two shards of one task both have a checksum with some name, the two checksums are equal.
 ///
 /// A shard lists the keyframes that it has read. If the stream keeps all keyframes in memory
-/// (MotionStream::keeps_all()), it lists all keyframes. Otherwise it lists the keyframes of its segments, the first and
-/// the last keyframe, and the keyframe with which the next shard begins. For this reason two neighbouring shards have a
-/// keyframe in common.
+/// (MotionStream::keeps_all()), the shard lists all keyframes. Otherwise it lists the keyframes of its segments, the
+/// first and the last keyframe, and the keyframe with which the next shard begins. For this reason two neighbouring
+/// shards have a keyframe in common.
 using TaskChecksums = std::map<std::string, std::uint32_t, std::less<>>;
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,8 @@
 /// Finds the weighting of faces that an author's normals follow. Private to workflow.
 ///
 /// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h). The stored
-/// normals show which weighting it used. The true normals follow the same weighting, so a difference from another
-/// weighting is not an error of the file.
+/// normals show which weighting the program used. The true normals follow the same weighting, so a difference from
+/// another weighting is not an error of the file.
 ///
 ///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees; at all other normals
 ///                the weightings agree

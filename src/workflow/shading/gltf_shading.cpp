@@ -339,8 +339,8 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   return backs;
 }
 
-// Finds corners on one side of a sheet whose vertex has a stored normal that faces the other side. Returns one value
-// for each corner, or an empty list if there are no such corners.
+// Finds corners whose face belongs to one side of a sheet, but whose vertex has a stored normal that faces the other
+// side. Returns one value for each corner, or an empty list if there are no such corners.
 std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& points) {
   const Topology& topology = shading.set.topology;
   const auto corners = topology.corners();
@@ -374,7 +374,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
     if (apart.empty()) continue;
     const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
     const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
-    // Finds the side to which the stored normals of the vertices at this point face.
+    // Finds out to which side the stored normals of the vertices at this point face.
     std::vector<double> along(sides);
     for (std::size_t n = 0; n < here.size(); ++n) {
       const std::uint32_t c = here[n].second;
@@ -435,7 +435,7 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
 
 // Removes the mark of a bake if it is no longer true. Programs that compute new normals for every target keep the names
 // of correction targets, but not their deltas. A bake never writes a correction target without deltas, so a target
-// without them shows that such a program has changed the file.
+// without deltas shows that such a program has changed the file.
 void drop_mark_of_emptied_targets(GltfShading& shading) {
   if (!shading.mark || shading.mark->extras.empty()) return;
   for (const GltfExtraTarget& extra : shading.mark->extras)

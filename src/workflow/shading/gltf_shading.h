@@ -85,7 +85,7 @@ struct GltfShading {
 };
 
 /// Reads one mesh. Vertices with the same place in the base and the same deltas in all targets are one point, even if
-/// they belong to different primitives. They share a normal if their stored base normals agree.
+/// they belong to different primitives. The vertices of one point share a normal if their stored base normals agree.
 ///
 /// Vertices of primitives without NORMAL have no element, and their faces do not count. If options.smooth is true,
 /// these vertices get normals by the crease angle, and share them only among each other. A vertex of the file has a

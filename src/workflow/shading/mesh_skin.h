@@ -38,8 +38,8 @@ class MeshSkin {
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
 
-  /// Poses the joints as they are at a time in seconds. If they jump at that time, uses the pose just after the jump,
-  /// or just before the jump if just_before is true. Returns true if the pose may have changed.
+  /// Poses the joints as they are at a time in seconds. If the joints jump at that time, uses the pose just after the
+  /// jump, or just before the jump if just_before is true. Returns true if the pose may have changed.
   bool pose(double time, bool just_before);
 
   /// Tells whether the joints move in the animation for which the skin was read.

@@ -6,8 +6,8 @@
 ///     poses given      a pose between two given poses, or between a given pose and the rest pose, which has weights 0
 ///
 /// Two names go together if they are the left and the right of the same feature. Such targets are drawn together 8
-/// times as often as any two. Two names also go together if they share a word, or if both belong to the mouth or to the
-/// eyes (3 times as often, for example "jawOpen" and "mouthSmile_L").
+/// times as often as any two targets. Two names also go together if they share a word, or if both belong to the mouth
+/// or to the eyes (3 times as often, for example "jawOpen" and "mouthSmile_L").
 ///
 /// Threads    All functions are pure, and give the same poses on every system.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_

@@ -119,8 +119,8 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_
   const std::size_t count = std::min(total, most);
   std::size_t track = 0, first = poses_.size();  // first: the index of the first sample of `track`
   for (std::size_t n = 0; n < count; ++n) {
-    // Chooses evenly spaced indices of samples, including the first and the last index. Computes them in double, so
-    // that no product overflows.
+    // Chooses evenly spaced indices of samples, including the first and the last index. Computes the indices in double,
+    // so that no product overflows.
     const std::size_t index =
         count < 2 ? 0
                   : static_cast<std::size_t>(std::floor(static_cast<double>(n) * static_cast<double>(total - 1) /

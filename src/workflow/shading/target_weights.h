@@ -41,7 +41,7 @@ class WeightUse {
  public:
   explicit WeightUse(std::size_t targets) : lowest_(targets, 0.0), highest_(targets, 0.0), moments_(targets) {}
 
-  /// Adds a track. It must have as many targets as this object, and outlive this object.
+  /// Adds a track. The track must have as many targets as this object, and must outlive the object.
   void add_track(const WeightTrack& track);
   void add_pose(std::vector<double> weights);
 

@@ -160,7 +160,6 @@ class Mending {
   }
 
  private:
-  // Lists the triangle corners at each point.
   void list_points() {
     const auto corners = shading_.set.topology.corners();
     point_offsets_.assign(shading_.point_of_vertex.size() + 1, 0);
@@ -181,7 +180,6 @@ class Mending {
     return {corners_at_.data() + point_offsets_[p], corners_at_.data() + point_offsets_[p + 1]};
   }
 
-  // A corner of a polygon.
   struct Part {
     std::uint32_t polygon = 0;
     std::size_t corner = 0;
@@ -384,9 +382,9 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // If several candidates are equally near, the candidate that most normals follow exactly is chosen. If several
-      // candidates are equal in this too, quads are preferred if the file was cut from quads and has keys. Otherwise
-      // triangles and sums over own corners are preferred.
+      // If several candidates are equally near, the candidate that most normals follow exactly is chosen. If this
+      // number is equal too, quads are preferred if the file was cut from quads and has keys. Otherwise triangles and
+      // sums over own corners are preferred.
       constexpr double kAlike = 0.003, kAsMany = 0.005, kMostOfAll = 0.75;
       std::size_t found = best;
       double most = -1;
@@ -447,8 +445,8 @@ class Candidates {
     return false;
   }
 
-  // Tells for each place whether the two sides of a sheet meet there, where their normals would cancel. Returns an
-  // empty list if there is no such place.
+  // Returns true for each place at which the two sides of a sheet meet, because their normals would cancel in a sum
+  // over the place. Returns an empty list if there is no such place.
   [[nodiscard]] std::vector<bool> places_with_sides() const {
     std::vector<bool> result;
     if (shading_.place_of_vertex.empty()) return result;
@@ -487,7 +485,7 @@ class Candidates {
   }
 
   // Returns the angle in degrees between the stored normal of an element and its normal by one candidate. Returns 0 if
-  // one of the two normals does not exist.
+  // the stored normal or the computed normal does not exist.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };

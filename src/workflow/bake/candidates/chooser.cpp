@@ -34,8 +34,8 @@ constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
 // A candidate is better than the deltas of the file only if its mean error is below kBetter times the mean error of
 // these deltas.
 constexpr double kBetter = 0.95;
-// The largest part of the mean error that may remain after the number of correction targets of a rig is doubled. If
-// more remains, doubling is not worth it.
+// The largest part of the mean error that may remain after the number of correction targets of a rig is doubled. If a
+// larger part remains, larger numbers are not tried.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
@@ -110,7 +110,7 @@ class Chooser {
             has_unit(options_.viewers)};
   }
 
-  // Judges a candidate, and keeps the candidate if it is the best so far. Returns the bytes of its deltas.
+  // Judges a candidate, and keeps the candidate if it is the best so far. Returns the bytes of the candidate's deltas.
   std::size_t consider(Candidate candidate) {
     const std::size_t targets = source_.shading.set.targets.size();
     Judged judged;
@@ -300,8 +300,8 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // The deltas of the file lose to any candidate that is better in some viewer. There is one exception: they win if
-    // they are within the tolerance and the smallest file is preferred.
+    // The deltas of the file lose to any candidate that is better in some viewer. There is one exception: the deltas of
+    // the file win if they are within the tolerance and the smallest file is preferred.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);

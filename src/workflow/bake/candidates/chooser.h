@@ -1,8 +1,8 @@
 /// Chooses what a bake writes for a mesh. Private to workflow.
 ///
-/// Makers make candidates, the judge measures what viewers render with each candidate, and the chooser picks one of
-/// them. It picks one candidate for the whole mesh: if vertices chose separately, their normals would not fit those of
-/// their neighbours.
+/// Makers make candidates, the judge measures what viewers render with each candidate, and the chooser picks one
+/// candidate for the whole mesh. If each vertex had its own candidate, its normal would not fit the normals of its
+/// neighbours.
 ///
 ///     better in a viewer    The mean error over all poses is smaller by at least a twentieth. In addition, the mean
 ///                           error, the 99.9 % quantile, the worst error and the torn edges (beyond 10, 20 and 40

@@ -118,7 +118,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
     // Estimates the number of keys for which there are enough rows. A piece of a curve takes three rows if its
-    // neighbours are left out, and otherwise two rows, because it shares its ends.
+    // neighbours are left out. Otherwise it takes two rows, because neighbouring pieces share a row.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -482,8 +482,8 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = found.extras.size();
-  // Keeps deltas along the stored normal for viewers that add up deltas, because they allow turns by more than a right
-  // angle. In viewers that keep only directions, such deltas are wrong.
+  // Keeps deltas along the stored normal for viewers that add up deltas, because such deltas allow turns by more than a
+  // right angle. In viewers that keep only directions, such deltas are wrong.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,

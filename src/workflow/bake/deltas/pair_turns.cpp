@@ -119,7 +119,7 @@ void PosedNormals::hold(std::size_t first) {
   });
 }
 
-// A pair of targets while it is measured.
+// A pair of targets that is being measured.
 struct PairMeter::Candidate {
   ExtraWeight extra;
   BlendTerm term;      // without elements that no vertex shows; freed after the measurement

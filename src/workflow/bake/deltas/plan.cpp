@@ -1,7 +1,7 @@
 // Plans a bake. The terms of each single target are always written, and only pairs of targets are chosen. Each pair
 // that is active at the same time in some pose may get a correction target. The worth of a pair is the angle by which
-// normals turn without this target, in poses of the file. The pairs with the smallest worth are left out, as many as
-// together turn a normal by at most the tolerance.
+// normals turn without its correction target, in poses of the file. The pairs with the smallest worth are left out, as
+// many as together turn a normal by at most the tolerance.
 #include "workflow/bake/deltas/plan.h"
 
 #include <algorithm>
@@ -156,8 +156,8 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   while (count < order.size() && (turn + candidates[order[count]].turn) * kDegreesPerRadian <= tolerance)
     turn += candidates[order[count++]].turn;
   order.resize(count);
-  // Leaves out fewer pairs if their terms together turn a normal too far. A term along a normal does not turn this
-  // normal alone, but the sum of several such terms may be longer than the normal and turn it. The number of pairs that
+  // Leaves out fewer pairs if their terms together turn a normal too far. A single term along a normal does not turn
+  // this normal, but the sum of several such terms may be longer than the normal and turn it. The number of pairs that
   // are left out is halved until they turn no normal by more than the tolerance.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;

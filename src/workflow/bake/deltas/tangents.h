@@ -2,9 +2,9 @@
 /// the right normals, and keep length 1. Private to workflow.
 ///
 ///     carried    A tangent lies in the faces around its vertex and moves with each of them, as texture coordinates do.
-///                If it is a e1 + b e2 for the edges e1, e2 of a face in the base, it is a e1' + b e2' at weight 1 of a
-///                target. The results of several faces are added up, weighted by the angle of the face at the vertex,
-///                as in MikkTSpace.
+///                If the tangent is a e1 + b e2 for the edges e1, e2 of a face in the base, it is a e1' + b e2' at
+///                weight 1 of a target. The results of several faces are added up, weighted by the angle of the face at
+///                the vertex, as in MikkTSpace.
 ///     upright    The part of the tangent along the right normal is removed, and the rest is scaled to length 1.
 ///     stale      A stored tangent is stale if at weight 1 of the target its angle to the right normal is farther from
 ///                90 degrees than in the base, by more than a degree. If one vertex has a stale tangent, all tangents

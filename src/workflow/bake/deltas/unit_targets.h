@@ -1,13 +1,13 @@
-/// Computes deltas that every viewer renders alike. They lead from the base normal N to other unit normals. Private to
-/// workflow.
+/// Computes deltas that every viewer renders alike. The deltas lead from the base normal N to other unit normals.
+/// Private to workflow.
 ///
 /// Some viewers render N + D, some keep only the direction of N + D, and some clamp the components of D to 1. If |N +
 /// D| = 1 and no component of D is beyond 1, all of these viewers render the same normal. For this reason each delta of
 /// the author's targets and of correction targets is u - N with a unit vector u (docs/theory.md, section 16). Such a u
 /// "fits" if no component of u - N is beyond 1.
 ///
-/// Vectors    base and u have length 1. base may also be (0, 0, 0), and then every u fits.
-/// Threads    All functions are pure.
+/// Vectors    base and u have length 1. base may also be (0, 0, 0), and then every u fits. Threads    All functions are
+/// pure.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
 

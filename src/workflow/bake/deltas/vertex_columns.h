@@ -1,6 +1,6 @@
 /// Stores vectors of vertices in columns. Each column belongs to a target, and is multiplied by the weight of this
-/// target in a pose. Files store vectors column by column, but the sum at a vertex needs them vertex by vertex. Private
-/// to workflow.
+/// target in a pose. Files store vectors column by column, but the sum at a vertex needs all vectors of this vertex.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
 

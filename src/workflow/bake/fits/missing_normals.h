@@ -90,8 +90,8 @@ class MissingNormals {
 };
 
 /// Returns a measure of the angle between two vectors of any length. The measure grows with the angle, from 0 to 2, and
-/// needs no arc tangent. Up to a right angle it is the squared sine, and for larger angles it is 2 minus the squared
-/// sine. It is 0 if one of the vectors is zero.
+/// needs no arc tangent. For angles up to a right angle the measure is the squared sine, and for larger angles 2 minus
+/// the squared sine. The measure is 0 if one of the vectors is zero.
 [[nodiscard]] inline float openness(const Vec3f& a, const Vec3f& b) noexcept {
   const Vec3f aside = cross(a, b);
   const float across = dot(aside, aside), along = dot(a, b), both = across + along * along;

@@ -19,7 +19,7 @@ constexpr int kFineBits = 16;
 // other constants limit the number of poses of one kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
 // Numbers of poses in a glance, which is a quick measurement. A glance takes every kGlance-th pose, but at least
-// kFewestAtGlance poses if there are so many.
+// kFewestAtGlance poses, or all poses if there are fewer.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 // The largest number of errors (of a vertex in a pose) that are in memory at the same time.
 constexpr std::size_t kMostErrors = 4000000;
@@ -126,8 +126,9 @@ class Sums {
     }
   }
 
-  // Compares the sums with the right normals, which are given as planes of x, y and z. Writes the angles between them
-  // in degrees, and the differences of the unit vectors as planes. Returns the length of the longest difference.
+  // Compares the sums with the right normals, which are given as planes of x, y and z. Writes the angles between sums
+  // and right normals in degrees, and the differences of the unit vectors as planes. Returns the length of the longest
+  // difference.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
@@ -337,7 +338,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
 }
 
 TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
-  // Uses zeros for a vertex that is not judged, so that it counts as a vertex without error.
+  // Uses zeros for a vertex that is not judged, because such a vertex counts as a vertex without error.
   const std::size_t count = known.numbers.size(), poses = differences.poses;
   const std::vector<float> none(3 * poses, 0.0F);
   return parallel_fold<TearCounts>(

@@ -44,8 +44,8 @@ class CurveNodes {
   /// Returns the weights of the mesh's own targets at a node.
   [[nodiscard]] std::vector<double> pose(const WeightTrack& track, std::size_t node) const;
 
-  /// A place in the gap after a key. The value of a curve at this place is the sum of its values at three nodes,
-  /// multiplied by `factors`.
+  /// A place in the gap after a key. The value of a curve at this place is the sum of the curve's values at three
+  /// nodes, each multiplied by its factor.
   struct Place {
     std::array<std::size_t, 3> nodes{};
     std::array<double, 3> factors{};

@@ -1,8 +1,8 @@
 /// Finds the skins that matter when a bake chooses deltas. Each skin belongs to a node of the file that has the mesh.
 /// Private to workflow.
 ///
-/// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. If a skin
-/// does only this to all vertices, it is left out.
+/// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. A skin that
+/// only rotates all vertices and scales them evenly is left out.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_SKINS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_SKINS_H_
 

@@ -30,9 +30,9 @@ struct PoseSet {
 };
 
 /// Returns the sets of poses of a mesh. The sets have about `most` poses of the mesh's tracks, as each viewer plays
-/// them, and the poses that stand still. Unless only animations count, they also have poses with each target alone, and
-/// the poses for which the rig is made. `numbers` has the judged vertices that each target turns. A target that turns
-/// no judged vertex is left out of all poses.
+/// them, and the poses that stand still. Unless only animations count, the sets also have poses with each target alone,
+/// and the poses for which the rig is made. `numbers` has the judged vertices that each target turns. A target that
+/// turns no judged vertex is left out of all poses.
 [[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                              std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                              bool animations_only);

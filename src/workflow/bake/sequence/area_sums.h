@@ -36,7 +36,7 @@ class AreaSums {
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
   /// Calls body for each block of elements, with more exact sums. If the vector areas around an element cancel to less
   /// than 2^-20 of the sum of their sizes, their sum is hardly more than rounding error, and of_a() or of_b() computes
-  /// it instead. Both functions are called on several threads at the same time.
+  /// the sum instead. Both functions are called on several threads at the same time.
   using Exact = std::function<Vec3d(std::size_t element)>;
   void each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b, const Body& body) const;
 

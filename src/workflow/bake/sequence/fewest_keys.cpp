@@ -55,8 +55,8 @@ Status hold_between(const SequenceNormals& normals, const Instant& from, const I
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// The judge of lines between the normals at two instants, as viewers interpolate them. Times count keyframes: keyframe
-// k is at time k. If a keyframe could not be read, status() has the error, and all other results are invalid.
+// Judges lines. A line interpolates linearly between the normals at two instants, as viewers do. Times count keyframes:
+// keyframe k is at time k. If a keyframe could not be read, status() has the error, and all other results are invalid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
@@ -211,7 +211,7 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
 }
 
 // Returns the number of pieces, at most kKeySteps, into which the worst segment must be cut, so that normals are within
-// the tolerance. All segments would get this number if they were cut evenly.
+// the tolerance. If all segments were cut evenly, each segment would get this number of pieces.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
   std::size_t pieces = 1;
   const auto suffices = [&](double start) {

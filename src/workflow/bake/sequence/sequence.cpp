@@ -48,8 +48,8 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
 }
 
 // Returns the weighting that the stored normals of keyframe 0 clearly follow, for a bake whose options give no
-// weighting. Returns area if there is no such weighting, or if the fits of all segments to it would take too much
-// memory.
+// weighting. Returns area if there is no such weighting, or if fits of all segments to this weighting would take too
+// much memory.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
@@ -163,7 +163,7 @@ bool any_frees_base(const std::vector<SequenceElement>& elements) {
 }
 
 // Writes the targets of the encoding exact. In almost every sequence the first segment determines the base normals of
-// all elements, and the keyframes are read once. Otherwise they are read three times.
+// all elements, and the keyframes are read once. Otherwise the keyframes are read three times.
 Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
                    SequenceTargets& targets, SequenceFile& file) {
   std::size_t furthest = 0;
@@ -381,8 +381,8 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  // Checks that float32 can hold all deltas. The encoding exact checks its deltas while it writes them, and if there
-  // are fits, the deltas were checked before the fits were made.
+  // Checks that float32 can hold all deltas. The encoding exact needs no check here, because it checks deltas while it
+  // writes them. Fits need no check either, because deltas were checked before the fits were made.
   if (!is_exact && normals.bounds().empty()) {
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }

@@ -152,9 +152,9 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
   return true;
 }
 
-// Finds the deltas of a key with the smallest error in the segment before it. The directions in a segment depend only
-// on the ratio of the lengths at its two keys. For this reason every segment can have the best ratio, and the lengths
-// at keys are products of ratios.
+// Finds the deltas of a key with the smallest error in the segment before the key. The directions in a segment depend
+// only on the ratio of the lengths at its two keys. For this reason every segment can have the best ratio, and the
+// lengths at keys are products of ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
   // The smallest and the largest length of N plus the delta of a key. Beyond these lengths, sums in float32 lose

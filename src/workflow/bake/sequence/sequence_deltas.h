@@ -1,5 +1,5 @@
 /// Computes base normals and deltas of the elements of a sequence. The results depend only on the normals of the
-/// sequence. sequence_file.h writes them to a file. Private to workflow.
+/// sequence. sequence_file.h writes these results to a file. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
 

@@ -39,8 +39,8 @@ struct SequenceTargets {
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// The vertices of a file. First come the vertices of the motion. If a vertex shows several normals, copies of this
-/// vertex follow, one for each further normal.
+/// The vertices of a file. First come the vertices of the motion. If a vertex shows several normals, the file also has
+/// a copy of the vertex for each further normal, after all vertices of the motion.
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
@@ -79,16 +79,16 @@ class SequenceFile {
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
-  /// Sets the origin that was subtracted from all positions. The node of the mesh is moved there.
+  /// Sets the origin that was subtracted from all positions. The node of the mesh is moved to this origin.
   void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
 
-  /// Begins the file again with other elements. Targets that were added are lost.
+  /// Begins the file again with other elements. Drops all targets that were added.
   void restart(std::span<const float> base, std::span<const SequenceElement> elements);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
-  /// Adds a target for a key. `positions` has the key's float32 deltas from key 0, as SequenceNormals returns them; for
-  /// key 0, it is empty. `normals` has one vector for each element, (E, 3).
+  /// Adds a target for a key. `positions` has the key's float32 deltas from key 0, as SequenceNormals returns them. For
+  /// key 0, `positions` is empty. `normals` has one vector for each element, (E, 3).
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
   /// Adds a target for a bend of a segment. A segment may have several bends. In the file, bends come after the targets
@@ -105,7 +105,7 @@ class SequenceFile {
                                            const GlbBuilder::Take& take);
 
  private:
-  // Finishes the file with this track. `rest` has the weights that the mesh shows while no animation plays.
+  // Completes the file with this track. `rest` has the weights that the mesh shows while no animation plays.
   [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest,
                                            const GlbBuilder::Take& take);

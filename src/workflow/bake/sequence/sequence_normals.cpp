@@ -33,7 +33,6 @@ void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coord
   });
 }
 
-// Returns the delta of a coordinate from its value at key 0, in float32, as a file stores it.
 float delta_of(float position, float base) { return position - base; }
 
 bool is_far(float delta) {

@@ -26,7 +26,7 @@ class SequenceNormals {
  public:
   /// Makes the object, and reads key 0. If the weighting is not area, also reads all keyframes, to fit all segments.
   /// `stored` may have the normals of the corners at key 0, (corners, 3). Their rotation away from the geometry's
-  /// normals is then applied at every instant. The stream and the groups must outlive the result. The memory is that of
+  /// normals is then applied at every instant. The stream and the groups must outlive the result. Needs the memory of
   /// key 0 and of the fits. Errors: kUsage if the fits of two neighbouring segments do not agree at their common key,
   /// because one target of a key cannot represent both; those of check_deltas(), if there are fits; those of the
   /// stream.
@@ -63,8 +63,8 @@ class SequenceNormals {
   struct Rows {
     PointRows positions, displacements;
   };
-  /// Calls body(elements, n, d) for blocks of elements, on all cores. n are the normals of the elements at the second
-  /// key of the segment, and d their bends in the segment.
+  /// Calls body(elements, n, d) for blocks of elements, on all cores. n has the normals of the elements at the second
+  /// key of the segment, and d has their bends in the segment.
   void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
@@ -74,7 +74,7 @@ class SequenceNormals {
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  // Compute the normals and bends of the geometry, before they are rotated as the stored normals are.
+  // Compute the normals and bends of the geometry, without the rotation to the stored normals.
   [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
   void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
@@ -86,7 +86,6 @@ class SequenceNormals {
 
   [[nodiscard]] const Motion& motion() const noexcept { return stream_->motion(); }
   [[nodiscard]] Status fit(Weighting weighting);
-  // Write the points at a key, and their displacements in a segment.
   void write_positions(std::size_t key, PointRows& rows) const;
   void write_displacements(std::size_t segment, PointRows& rows) const;
   // Return functions that compute the exact sum of areas of one element. They are called for elements whose areas

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The number of morphed attributes that every viewer supports. The glTF specification requires at least this number,
-// and viewers that keep morphed data in vertex attributes cannot support more of them in WebGL 1.
+// and viewers that keep morphed data in vertex attributes cannot support more such attributes in WebGL 1.
 constexpr std::size_t kMorphedAttributes = 8;
 // Factors by which a file may grow without a warning. kLargeTimesOfMany applies if there are more than kFewExtras
 // correction targets.

@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// The accessors that hold only zeros, for targets that lack an attribute. There is one for each number of vertices.
+/// The accessors that hold only zeros, for targets that lack an attribute. Each number of vertices has one accessor.
 class ZeroVectors {
  public:
   ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
@@ -31,9 +31,9 @@ class ZeroVectors {
   std::map<std::size_t, std::size_t> accessors_;
 };
 
-/// The writer of one mesh. It writes targets one by one, so that only the arrays of one target are in memory. All
-/// targets of a primitive must have the same attributes (section 3.7.2.2 of the specification). If one target has an
-/// attribute, the other targets get zeros.
+/// Writes one mesh, target by target, so that only the arrays of one target are in memory. All targets of a primitive
+/// must have the same attributes (section 3.7.2.2 of the specification). If one target has an attribute, the other
+/// targets get zeros.
 class MeshWriter {
  public:
   /// Prepares a mesh for writing. `smooth` must be the value with which the shading was read. All arguments must
@@ -55,7 +55,7 @@ class MeshWriter {
   /// Appends a correction target, which moves no vertex.
   void append_target(const TargetDeltas& of_normals);
   /// Sets the weights and names of the correction targets that append_target() added. If no formula gives the weights,
-  /// `rest` has them for each pose that stands still (outside of animations), in the order of MeshWeights.
+  /// `rest` has the weights for each pose that stands still (outside of animations), in the order of MeshWeights.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
   /// Writes the mark of the bake (docs/formats.md) into the mesh, where the next bake and an audit look for it. If
   /// there are correction targets, also writes the mark into the nodes that have the mesh, because some viewers pass

@@ -1,6 +1,6 @@
-// Writes tracks into the file. Several channels may share a sampler. Some of them may drive other meshes, or values
-// that are not weights. If such a channel needs the sampler, the sampler does not change, and each mesh gets a new
-// sampler. Otherwise the first mesh changes the sampler, and each further mesh gets a new one.
+// Writes tracks into the file. Several channels may share a sampler. Some of these channels may drive other meshes, or
+// values that are not weights. If such a channel needs the sampler, the sampler does not change, and each mesh gets a
+// new sampler. Otherwise the first mesh changes the sampler, and each further mesh gets a new sampler.
 #include "workflow/bake/write/write_tracks.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ struct Sampler {
   bool has_new_input = false, is_converted = false;
 };
 
-// Returns the mesh whose weights a JSON pointer names. The pointer may name all weights, or one of them.
+// Returns the mesh whose weights a JSON pointer names. The pointer may name all weights or a single weight.
 std::optional<std::size_t> mesh_of_weights(const GltfDocument& document, std::string_view rest) {
   const bool of_node = rest.starts_with("/nodes/");
   if (!of_node && !rest.starts_with("/meshes/")) return std::nullopt;
