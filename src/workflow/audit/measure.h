@@ -89,7 +89,7 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 /// faults, returns the first in this order: normals that cannot be lit, errors at keys, errors between keys.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
-/// Adds the errors of a segment to those of its subject.
+/// Adds the errors of a segment to the errors of its subject.
 inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
   subject.error.add(found.error);
   subject.at_keys.add(found.at_keys);

@@ -117,7 +117,7 @@ struct Piece {
   }
 };
 
-// Returns the poses of the mesh if its vertices move on a curve, at the times of the keyframes that were left out.
+// Returns the poses of a mesh whose vertices move on `curve`, at the times of the keyframes that were left out.
 std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegment& curve) {
   std::vector<Motion::Keyframe> poses;
   for (const Motion::Keyframe& keyframe : piece.between) {

@@ -1,4 +1,4 @@
-// Joins the arrays that shards of samples wrote into one array, and finds missing rows.
+// Joins into one array the arrays that shards of samples wrote, and finds missing rows.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

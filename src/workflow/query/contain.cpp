@@ -17,7 +17,8 @@ struct Passed {
 };
 
 // Returns the positions of points at a time of the motion. `share` is the part of the motion that has passed, from 0 to
-// 1. The positions are relative to the origin of the motion and in float32, as the positions of its vertices.
+// 1. The positions are relative to the origin of the motion and in float32, like the positions of the motion's
+// vertices.
 std::vector<float> places_at(const PointPaths& points, const std::array<double, 3>& origin, double share) {
   std::vector<float> places(points.from.size());
   for (std::size_t i = 0; i < places.size(); ++i) {

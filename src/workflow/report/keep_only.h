@@ -1,4 +1,4 @@
-/// Removes values that are not kept from a list. Private to workflow.
+/// Removes from a list the values that are not kept. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 #define CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 

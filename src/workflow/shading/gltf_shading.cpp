@@ -42,7 +42,7 @@ void append(std::vector<float> values, std::size_t first_vertex, std::size_t cou
   all.insert(all.end(), values.begin(), values.end());
 }
 
-// Appends those deltas of a primitive's vertices that are not zero to a target.
+// Appends to a target the deltas of a primitive's vertices, except zeros.
 void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, BlendTarget& target) {
   const auto is_moved = [&](std::size_t v) { return deltas[v] != 0 || deltas[v + 1] != 0 || deltas[v + 2] != 0; };
   std::size_t count = 0;

@@ -102,8 +102,8 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// The changes of a rule around stored normals that do not follow the rule. A change is made only if these normals then
-// follow the changed rule.
+// Changes a rule around stored normals that do not follow the rule. A change is made only if these normals then follow
+// the changed rule.
 class Mending {
  public:
   Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)

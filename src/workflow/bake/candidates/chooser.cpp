@@ -78,7 +78,7 @@ struct Judged {
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
-// The comparison of candidates. consider() takes the candidates one after the other, and the best one is kept.
+// Compares candidates. consider() takes the candidates one after the other, and keeps the best one.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -399,8 +399,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
   std::optional<Candidate> similar;  // if set, own deltas of any length are judged last
   if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
-    // Viewers that add deltas as stored render the true normals with deltas of any length. In many files, other viewers
-    // render such deltas no worse than the file before the bake.
+    // Tries deltas of any length too. Viewers that add deltas as stored render the true normals with them, and in many
+    // files other viewers render such deltas no worse than the file before the bake.
     Making of_any = making;
     of_any.lengths = Lengths::kFree;
     if (making.rights.are_by_area()) {

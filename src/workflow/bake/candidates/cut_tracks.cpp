@@ -20,8 +20,8 @@ constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
 // high, because it adds up all errors as if they came at the same moment.
 constexpr double kPartOfSplines = 2;
 
-// Returns the largest angle, in radians, by which a normal turns in the middle of each gap between keys if correction
-// weights change linearly in the gap. In the middle this angle is largest.
+// Returns for each gap between keys the largest angle, in radians, by which linear correction weights turn a normal
+// away from the normal with exact weights. Measures in the middle of the gap, where this angle is largest.
 std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                   const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                   const VertexColumns& columns) {
@@ -54,7 +54,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
   // Calls visit(p, openness) for the n-th vertex in each pose p. The openness grows with the angle between two normals:
-  // the rendered normal, and this normal after the missing part of the correction weights is added.
+  // the normal with exact correction weights, and the normal with correction weights that are linear in the gap.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
     thread_local std::vector<float> shown, off;

@@ -101,8 +101,8 @@ inline constexpr double kPartOfTracks = 0.2;
 /// about 700 MB of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
-// Makers of correction targets whose weights are quadratics of own weights, for a mesh that no animation drives
-// (quadratics.cpp).
+// Makers of correction targets whose weights are quadratic in the weights of the mesh's own targets, for a mesh that no
+// animation drives (quadratics.cpp).
 
 /// Adds correction targets to `own`, a candidate that has none. Calls take(candidate) for larger and larger numbers of
 /// correction targets, until take() returns false. As long as no program drives the correction targets, a viewer

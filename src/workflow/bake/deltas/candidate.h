@@ -39,12 +39,12 @@ struct Candidate {
 /// Converts the arrays of deltas of one target to a column, which has only the deltas that are not zero.
 [[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
 
-/// Returns the vertices that a bake judges. Some target may turn the normal of such a vertex, because the target moves a
-/// face around the vertex or stores a delta of its normal.
+/// Returns the vertices that a bake judges: those whose normal some target may turn, because the target moves a face
+/// around the vertex or stores a delta of its normal.
 [[nodiscard]] std::vector<std::uint32_t> judged_vertices(const DeltaSource& source,
                                                          const std::vector<VertexVectors>& stored);
 
-/// Returns for each target the vertices that the target may turn, as indices into `vertices`.
+/// Returns for each target the vertices whose normals the target may turn, as indices into `vertices`.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
                                                                          const std::vector<VertexVectors>& stored,
                                                                          std::span<const std::uint32_t> vertices);

@@ -16,7 +16,8 @@ namespace chronormal::inline internal {
 namespace {
 
 // The largest number of rounds of a fit. A viewer scales the sum of a normal and its deltas to length 1, so the sum may
-// have any length. Each round fits the sum to the length that is nearest to the length after the last round.
+// have any length. Each round fits the sum to the vector in the true direction that is nearest to the sum of the round
+// before.
 constexpr int kRounds = 12;
 // A fit ends with the first round that leaves more than this part of the squared error of the round before.
 constexpr double kStandstill = 0.99;
@@ -79,7 +80,6 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// The fit of the deltas of one element, over all poses.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -194,7 +194,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// The search for elements that are moved by several targets which are active at the same time in some pose.
+// Finds the elements that several targets move in the same pose.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)

@@ -258,7 +258,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // The vectors by which the normals of these elements change if the terms are left out. They form an array
+      // The vectors by which the normals of the elements in the range change if the terms are left out, as an array
       // (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);

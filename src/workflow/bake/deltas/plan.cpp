@@ -25,7 +25,7 @@ std::string place_of(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// The data of the file that tell which targets of a mesh are active together.
+// The data of the file that tell which targets of a mesh are active at the same time.
 struct MeshUse {
   const GltfShading& shading;
   const NormalTerms& terms;

@@ -52,8 +52,8 @@ class LowRankFit {
   [[nodiscard]] double worst() const;
 
  private:
-  // The basis of a fit: the vectors whose sums are fitted to the normals of a point. They form an array (instants,
-  // columns) for rows and places, with padding. The transposed array is stored too.
+  // The basis of a fit: the vectors whose sums are fitted to the normals of a point. The vectors form an array
+  // (instants, columns) for rows and places, with padding. The transposed array is stored too.
   struct Basis {
     std::size_t columns = 0, padded = 0, instants = 0, stride = 0;
     std::vector<float> by_instant, by_column;

@@ -62,8 +62,8 @@ class MissingNormals {
   [[nodiscard]] std::size_t rows() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the index of a point among the points given to the constructor. Indices differ after keep_beyond() has
-  /// removed points.
+  /// Returns the index of a point among the points given to the constructor. This index differs from `point` after
+  /// keep_beyond() has removed points.
   [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
   /// Returns the rendered sums of the stored normal and the own deltas for a point, in all rows, as an array (3,
   /// stride). A sum is zero in a row in which the right normal is not known.

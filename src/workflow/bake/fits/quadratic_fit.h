@@ -49,7 +49,8 @@ class QuadraticFit {
     std::vector<VertexVectors> vectors;  ///< deltas of any length
   };
   /// Returns the best `count` correction targets. count must be at most extras(). If keeps_lengths is false, only the
-  /// direction of the sum of the stored normal and all deltas is fitted, and the length of this sum stays as it is.
+  /// direction of the sum of the stored normal and all deltas is fitted, and the length of this sum changes as little
+  /// as possible.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:

@@ -111,7 +111,7 @@ struct ExtraDrivers {
   /// which these weights are zero.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// Returns a track with the weights of correction targets. Cubic splines get more keys until the errors of formulas
-  /// turn no normal by more than the smaller one of `tolerance` and spline_tolerance, in radians. If that takes more
+  /// turn no normal by more than the smaller of `tolerance` and spline_tolerance, in radians. If the track needs more
   /// than most_keys keys, the result has no values.
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;

@@ -30,8 +30,8 @@ class AreaSums {
   AreaSums(const Topology& topology, const NormalGroups& groups);
 
   /// Calls body(elements, sums_of_a, sums_of_b) for each block of elements. The sums are the vector areas around each
-  /// element, for the points a and for the points b. They are valid until body returns. If b is nullptr, sums_of_b is
-  /// empty.
+  /// element, for the points a and for the points b. The sums are valid until body returns. If b is nullptr, sums_of_b
+  /// is empty.
   using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
   /// Calls body for each block of elements, with more exact sums. If the vector areas around an element cancel to less

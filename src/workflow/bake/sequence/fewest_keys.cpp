@@ -49,7 +49,7 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Reads all keyframes that affect the directions at two instants and between them into memory. These are the keyframes
+// Reads into memory all keyframes that affect the directions at two instants and between them. These are the keyframes
 // of all segments from the first instant to the second, and of the segment before.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
@@ -103,7 +103,7 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out those elements of a segment from all later judgements whose error on the line from a to b is beyond the
+  // Excludes elements of a segment from all later judgements: those whose error on the line from a to b is beyond the
   // tolerance in this segment.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;

@@ -38,7 +38,7 @@ struct SegmentEnds {
 [[nodiscard]] SegmentEnds segment_ends(std::span<const SequenceElement> elements, const SegmentForm& form,
                                        const std::vector<Vec3d>& before);
 
-/// Returns the deltas of a key. They lead from the base normals of the elements to the given directions.
+/// Returns the deltas of a key, which lead from the base normals of the elements to the given directions.
 [[nodiscard]] std::vector<Vec3d> unit_key_deltas(std::span<const SequenceElement> elements,
                                                  std::span<const Vec3d> directions);
 

@@ -118,7 +118,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
     const double from = times[k], length = double{times[k + 1]} - from;
     for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
       const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
-      // Skips the key if no float32 number lies between the times of its neighbours.
+      // Skips the key if its time in float32 does not lie between the times of its neighbours.
       if (!(time > track.times.back() && time < times[k + 1])) continue;
       add(time, {k, (double{time} - from) / length});
     }
