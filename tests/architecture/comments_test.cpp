@@ -28,7 +28,8 @@ std::vector<std::string> refused_openers() {
   return openers;
 }
 
-// Returns the text of a comment line that begins with `mark` and has no code before it, or nothing.
+// Returns the text of a comment line that begins with `mark` and has no code before it. Returns nothing for other
+// lines.
 std::optional<std::string_view> comment_in(std::string_view line, std::string_view mark) {
   const std::size_t begin = line.find_first_not_of(' ');
   if (begin == std::string_view::npos || !line.substr(begin).starts_with(mark)) return std::nullopt;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the first plural noun in the text of a source that is joined to a number, with the number, such as
+// Returns the first text of a source file in which a number is joined to a plural noun, such as the C++ code
 // `to_string(n) + " vertices`. Returns an empty text if there is none.
 std::string joined_noun(const std::string& source) {
   const std::regex joined(

@@ -83,9 +83,9 @@ std::vector<std::string> parts_of(const std::string& path) {
 }
 
 // The place of a file in the order: the numbers of its floor, of its room on this floor, and of the room inside this
-// room. Room 0 has the files directly in the floor, which come before its rooms. main.cpp, in which the program begins,
-// comes after the rooms of its floor. A public header comes before the rooms inside its room, and a private file of the
-// room itself after them.
+// room. Room 0 stands for the files that lie directly in the folder of the floor, which come before its rooms.
+// main.cpp, in which the program begins, comes after the rooms of its floor. A public header comes before the rooms
+// inside its room, and a private file of the room itself after them.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;

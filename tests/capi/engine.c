@@ -104,7 +104,7 @@ static void decode(const int16_t word[2], double n[3]) {
 }
 
 /* Checks that calls for ranges of elements or for many t give the same bits as one call for all elements, and that
- * packed normals are close to the same normals. */
+ * packed normals are close to the unpacked normals. */
 static int check_outputs(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};

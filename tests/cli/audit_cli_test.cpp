@@ -1,4 +1,4 @@
-// Tests `audit` for scripts and people: the verdict, the tables, the JSON, and the exit codes.
+// Tests the results of `audit` that scripts and people read: the verdict, the tables, the JSON, and the exit codes.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Tests `bake` for scripts and people: the files that it writes, its report, and its exit codes.
+// Tests the results of `bake` that scripts and people read: the files that it writes, its report, and its exit codes.
 
 #include <gtest/gtest.h>
 
@@ -57,8 +57,8 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << "\nin\n" << text;
 }
 
-// Bakes random sheets for viewers that add up deltas. Some get worse in viewers that are not named, most of all with a
-// small tolerance. The report must name exactly these viewers.
+// Bakes files for viewers that add up deltas. In other viewers, some of the baked files have larger errors than the
+// input. The report must name exactly these viewers.
 TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
   constexpr std::uint64_t kFirstSeed = 1128;
   std::cout << "  from seed " << kFirstSeed << "\n";
@@ -66,7 +66,7 @@ TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
   for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 6; ++seed) {
     test::GltfBuilder sheet = test::random_sheet(seed, 4, 1 + seed % 3, 0).file();
     folder_.write("sheet.glb", sheet.glb());
-    // The first bake gives each target right normals at weight 1. The second bake makes a file of these normals again.
+    // Makes another input, right.glb, in which each target has the right normals at weight 1.
     ASSERT_EQ(run("sheet.glb -o right.glb --encode harmless --force").exit_code, 0);
     for (const char* input : {"sheet.glb", "right.glb", "moving.glb"}) {
       for (const char* tolerance : {"", " --tolerance 0.01"}) {

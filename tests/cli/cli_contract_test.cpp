@@ -213,8 +213,8 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// Lists for each option arguments with which the option is valid. needs_of() adds the arguments that a command needs in
-// any case.
+// Names for each option some arguments with which the option is valid. needs_of() adds the arguments that a command
+// always needs.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},

@@ -24,8 +24,8 @@ using Json = nlohmann::json;
 // Three triangles move in the first of two segments. The first triangle has no area. The normal of the second triangle
 // turns over at t = 1/4. The normal of the third triangle turns from z to -y, where linear interpolation has an error
 // of 45 - atan(1/2) degrees at t = 1/2. There are 18 samples: 3 faces, 2 segments, and 3 times in each segment. For 6
-// of them, there is no exact normal. Linear interpolation has two errors: the error of the third triangle, and 180
-// degrees where opposite normals cancel.
+// of these samples, there is no exact normal. Linear interpolation has errors at two samples: the error of the third
+// triangle, and 180 degrees where the opposite end normals of the second triangle cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {

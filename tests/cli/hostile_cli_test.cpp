@@ -174,8 +174,8 @@ TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_
 }
 
 TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
-  // A shell ignores SIGINT for background jobs. The shell also ignores SIGHUP if `trap` says so, as the command nohup
-  // does.
+  // The program must not be ended by signals that its shell ignores: SIGINT in a background job, and SIGHUP if `trap`
+  // says so, as the command nohup does.
   const ProcessResult result =
       run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
           "trap '' HUP; ");
@@ -308,7 +308,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
 }
 
 // If nobody reads a pipe, messages to the pipe are lost and the exit code does not change. If data should go to the
-// pipe, the program ends as other programs do in front of `head`.
+// pipe, the program ends as other programs do when `head` reads only some of their lines.
 TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);

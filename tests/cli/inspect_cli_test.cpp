@@ -1,5 +1,5 @@
-// Tests `inspect` for scripts and people: the facts about a file, the problems that it reports, the JSON, and the exit
-// codes.
+// Tests the results of `inspect` that scripts and people read: the facts about a file, the problems that it reports,
+// the JSON, and the exit codes.
 
 #include <gtest/gtest.h>
 

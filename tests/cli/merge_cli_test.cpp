@@ -1,5 +1,5 @@
 // Tests `--shard` and `merge`: results computed in shards on several machines and then merged must equal the result of
-// one machine. Also tests how keyframes are chosen.
+// one machine. Also tests how --from, --to and --every choose keyframes.
 #include <gtest/gtest.h>
 
 #include <filesystem>

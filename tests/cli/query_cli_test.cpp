@@ -1,4 +1,4 @@
-// Tests `query` for scripts and people: tables, JSON, arrays, and the exit codes of invalid calls.
+// Tests the results of `query` that scripts and people read: tables, JSON, arrays, and the exit codes of invalid calls.
 
 #include <gtest/gtest.h>
 

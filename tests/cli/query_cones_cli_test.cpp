@@ -1,4 +1,4 @@
-// Tests `query cones` and `query shutter` for scripts and people.
+// Tests the results of `query cones` and `query shutter` that scripts and people read.
 
 #include <gtest/gtest.h>
 

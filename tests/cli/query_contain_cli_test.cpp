@@ -1,5 +1,5 @@
-// Tests `query contain` for scripts and people: points at rest and in motion, the arrays, and the reasons why a mesh or
-// a file is refused.
+// Tests the results of `query contain` that scripts and people read: points at rest and in motion, the arrays, and the
+// reasons why a mesh or a file is refused.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Tests `report` for scripts and people: the page and its data, the table, the JSON, and the message if the page is
-// missing.
+// Tests the results of `report` that scripts and people read: the page and its data, the table, the JSON, and the
+// message if the page is missing.
 
 #include <gtest/gtest.h>
 

@@ -41,7 +41,8 @@ class Resume : public testing::Test {
   [[nodiscard]] std::string file(const std::string& name) const { return test::read_whole(folder_ / name); }
   [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
 
-  // Ends a run early by the limit, resumes the run, and compares the result with that of an undisturbed run.
+  // Ends a run early by a limit on the size of files, resumes the run, and compares the result with that of an
+  // undisturbed run.
   void check(const std::string& command, const std::string& undisturbed, const std::string& blocks = "4") const {
     const std::string out = " --resume -o out";
     ASSERT_EQ(run(command + undisturbed + " -o whole").exit_code, 0);

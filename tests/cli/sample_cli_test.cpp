@@ -1,6 +1,6 @@
-// Tests `sample` for scripts and people: arrays of normals, meshes with normals, and exit codes. If the environment
-// variable CHRONORMAL_DATA names a folder of meshes from other tools, also compares the computed normals with the
-// normals of these meshes.
+// Tests the results of `sample` that scripts and people read: arrays of normals, meshes with normals, and exit codes.
+// If the environment variable CHRONORMAL_DATA names a folder of meshes from other tools, also compares the computed
+// normals with the normals of these meshes.
 
 #include <gtest/gtest.h>
 

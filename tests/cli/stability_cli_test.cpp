@@ -70,8 +70,8 @@ TEST_F(Stability, no_command_and_no_option_vanishes) {
   expect_listed(found, "stable_options.txt");
 }
 
-// Adds the paths of all keys of a JSON value to `found`, such as "audit viewers[].worst_at.vertex". An entry of `files`
-// has the same keys as a report on one file.
+// Adds the paths of all keys of a JSON value to `found`, such as "audit viewers[].worst_at.vertex". An audit of several
+// files has an entry of `files` for each file, with the same keys as an audit of one file.
 void add_keys(const Json& json, const std::string& path, Names& found) {
   if (json.is_array())
     for (const Json& one : json) add_keys(one, path + "[]", found);

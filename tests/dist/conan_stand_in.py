@@ -86,7 +86,8 @@ class CMakeDeps:
             asks = re.search(rf"find_package\({names['cmake_file_name']}\b", ASKED)
             if not asks or names["cmake_target_name"] not in ASKED:
                 sys.exit(f"the project asks for no {names} of {package}")
-        # The recipe names no packages that only the program needs, and no threads, which come with the system.
+        # The recipe does not name the packages that only the program needs, nor the thread library, which comes with
+        # the system.
         asked = {name for name in re.findall(r"find_package\((\w+)", ASKED)} - {"MPI", "CLI11", "fmt", "Threads"}
         given = {names["cmake_file_name"] for names in self.properties.values()}
         if asked != given:

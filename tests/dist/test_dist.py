@@ -305,7 +305,7 @@ class Links(HTMLParser):
 
 
 class Site(Unpacked):
-    """Tests the site: its pages, and the reference of the headers. Reads them from the disk."""
+    """Tests the site: its pages and the reference of the headers, as files on the disk."""
 
     def setUp(self):
         super().setUp()
@@ -395,7 +395,7 @@ class Lists(Unpacked):
         self.list = json.loads(artefact("*.spdx.json").read_text())
 
     def linked_with(self, pattern, relation):
-        """Returns the names and versions of the components that the list has for an artefact."""
+        """Returns the names and versions of the components that the SPDX list has for an artefact."""
         packages = {package["SPDXID"]: package for package in self.list["packages"]}
         (this,) = [key for key, package in packages.items() if package.get("packageFileName") == artefact(pattern).name]
         linked = [packages[link["relatedSpdxElement"]] for link in self.list["relationships"]

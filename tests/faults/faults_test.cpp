@@ -147,8 +147,8 @@ class Faults : public testing::TestWithParam<Command> {
                 0);
   }
 
-  // Runs the command with a fault. Existing outputs of the command are put back first, so that the command replaces
-  // them.
+  // Runs the command with a fault. Before that, writes the old content of existing outputs again, so that the command
+  // replaces them.
   [[nodiscard]] Outcome run(const std::string& fault, const Streams& streams) const {
     fs::remove_all(folder_ / "out");
     fs::create_directory(folder_ / "out");
@@ -243,8 +243,8 @@ class Faults : public testing::TestWithParam<Command> {
     return is_whole || start < kMostOfArguments ? 0 : start - kMostOfArguments;
   }
 
-  // Runs the command with one fault after the other: one in `many` calls of a kind fails. If is_harmless, the faults
-  // must not change the exit code.
+  // Runs the command many times. In each run, another call of the given kind fails. Unless CHRONORMAL_FULL is set,
+  // tests at most one in `many` of these calls. If is_harmless is true, the faults must not change the exit code.
   void check_each(const std::string& kind, const std::string& how, std::size_t many, bool is_harmless = false) {
     const std::size_t table = kind == "malloc" ? mallocs_of_table() : 0;
     const std::size_t most = table > 0 ? kMostPlaces : counts_[kind];

@@ -229,7 +229,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // The keyframes now move vertex 2 exactly through the line through vertices 0 and 1.
+  // Moves vertex 2 exactly through the line through vertices 0 and 1.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();

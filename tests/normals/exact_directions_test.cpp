@@ -188,7 +188,7 @@ Tally judged(const Motion& motion, const std::vector<double>& times) {
   return tally;
 }
 
-// The small meshes for which an earlier version computed normals with errors of up to 180 degrees.
+// Tests small meshes for which an earlier version computed normals with errors of up to 180 degrees.
 TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
   struct Found {
     const char* name;

@@ -143,8 +143,8 @@ Way written_in_c(std::size_t size, Write write) {
   };
 }
 
-// Makes a way from curves of the C interface. If is_next, creates the curves for the reversed segment first, and then
-// changes the curves to the segment.
+// Makes a way from curves of the C interface. If is_next, first makes curves for vertices that stay at `from`, and then
+// prepares the segment as the next segment of these curves.
 Way curves_in_c(const MeshInC& in, bool is_next) {
   chronormal_curves* made = nullptr;
   expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));

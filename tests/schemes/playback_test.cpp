@@ -123,7 +123,7 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
   // An anchor is a step that computes the state of the playback anew from t. Between two anchors, the bits must equal
-  // those of a playback without anchors that begins at the first of the two.
+  // those of a playback without anchors that begins at the first of these anchors.
   constexpr std::size_t kInterval = 8;
   constexpr double kStep = 0x1p-6;  // a power of two, so all times are exact
   const Prepared twist("twist");

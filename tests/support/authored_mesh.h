@@ -1,6 +1,6 @@
 /// A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is
 /// the sum of the normals of all polygons around the point, weighted by the angles at their corners. Some normals are
-/// edited as if by hand, differently in each target, and some of these point to the back.
+/// edited as if by hand, differently in each target, and some edited normals point to the back.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 

@@ -15,7 +15,7 @@
 namespace chronormal::test {
 
 /// Makes a round body with bumps, which turns by `angle` radians between the times 0 and 1. By default, the body has
-/// more than one block of elements.
+/// more faces than the library computes in one block.
 [[nodiscard]] inline Motion curved_motion(const std::vector<double>& times, double angle, std::size_t around = 48,
                                           std::size_t up = 24) {
   constexpr double kPi = 3.14159265358979323846;

@@ -240,7 +240,7 @@ struct SoupOptions {
 
 /// Makes needles that are as thin as integer coordinates of 20 bits allow. Two edges have a length of about 2^20. In
 /// one of the coordinate planes, the coordinates of the edges are integers, and the edges span an area of 1. If
-/// in_plane, the triangles are in that plane; otherwise the triangles are tilted against it.
+/// in_plane, the triangles are in this plane; otherwise they are tilted out of the plane.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };

@@ -97,8 +97,8 @@ class GltfBuilder {
   std::size_t add_indices(const std::vector<T>& values) {
     return add_accessor("SCALAR", values);
   }
-  /// Adds an accessor whose elements begin at distances of `stride` bytes. The gaps between the elements are filled
-  /// with 0xEE.
+  /// Adds an accessor in which an element begins every `stride` bytes. The gaps between the elements are filled with
+  /// 0xEE.
   template <class T>
   std::size_t add_strided(const char* type, const std::vector<T>& values, std::size_t stride, bool normalized = false) {
     const std::size_t size = components(type) * sizeof(T), count = values.size() / components(type);

@@ -65,7 +65,7 @@ class GltfPlayer {
     return values;
   }
 
-  /// Returns the weights of a channel at a time. Computes them in float32, as viewers do.
+  /// Returns the weights of a channel at a time, computed in float32, as in viewers.
   [[nodiscard]] std::vector<float> weights_at(std::size_t animation, std::size_t channel, double time) const {
     const Json& a = json.at("animations").at(animation);
     const Json& sampler = a.at("samplers").at(a.at("channels").at(channel).at("sampler").get<std::size_t>());

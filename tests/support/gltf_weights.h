@@ -23,7 +23,7 @@ namespace chronormal::test {
     return static_cast<long double>(values.at(index));
   };
   constexpr std::size_t kIn = 0, kValue = 1, kOut = 2;
-  // Finds the last key at or before the time.
+  // `next` is the first key after the time.
   const auto after = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < key; });
   const auto next = static_cast<std::size_t>(after - times.begin());
   std::vector<double> weights;

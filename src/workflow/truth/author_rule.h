@@ -1,9 +1,9 @@
 /// Finds the rule by which a modelling tool added up face normals to the normals of a mesh. Private to workflow.
 ///
 /// Each modelling tool weights polygons or triangles in its own way, and the stored normals of a mesh show which rule
-/// its tool used. The normals of targets at weight 1 are compared first, with the offset of the base applied: a flat
-/// base or a cube has the same normals by all rules, but its targets do not. The base is used only if no target tells
-/// rules apart.
+/// its tool used. The normals of targets at weight 1 are compared first, with the author's change of the base normals
+/// applied: a flat base or a cube has the same normals by all rules, but its targets do not. The base is used only if
+/// no target tells rules apart.
 ///
 ///     candidate    a rule that the tool may have used: one of five weightings, of triangles or of quads, over the
 ///                  corners of an element or over all corners at the point of the element
@@ -20,10 +20,10 @@
 ///        of the median distance of triangles by area.
 ///     3. Triangles by area, since their normals can be computed exactly at every time.
 ///
-/// Around normals that do not follow the rule, the rule is changed if the change makes a normal follow exactly.
-/// Consecutive triangles become larger polygons, quads are split, and elements add up all corners at their points (also
-/// on both sides of faces that look like the two sides of a sheet but are not). A change that only brings normals
-/// nearer to the sums is not made, since that may be chance.
+/// Around stored normals that do not follow the rule, the rule is changed if the change makes a stored normal follow
+/// exactly. Three changes are possible: consecutive triangles become larger polygons, quads are split, and elements add
+/// up all corners at their points (also on both sides of faces that look like the two sides of a sheet but are not). A
+/// change that only brings stored normals nearer to their sums is not made, since the gain may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 

@@ -30,7 +30,7 @@ double rounding_of_stored(const GltfShading& shading) {
 }  // namespace
 
 // Finds the elements whose normals have offsets, the edges from which the azimuths of these offsets are measured, and
-// stale keys.
+// the targets whose stored normals are stale (stale_keys.h).
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)
@@ -146,8 +146,8 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Returns true if the stored normal of the element of frame n in target k, at weight 1, can be used. Writes the unit
-  // sum of face normals in this target to z.
+  // Returns true if an offset can be measured from the stored normal of the element of frame n in target k, at weight
+  // 1. Writes the unit sum of face normals in this target to z.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;
@@ -217,8 +217,8 @@ class AuthorTruth::Finder {
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // for each frame, its element
   std::vector<PlaneOffset> base_offsets_;  // for each edge, the base's offset with the azimuth measured from it
-  // For each edge, the sum over all keys of the squared distance between the offset at the key and the offset in the
-  // base, with azimuths measured from this edge; or -1 if the edge cannot be used.
+  // Holds for each edge a sum over all targets at weight 1: the squared distance between the offset in the target and
+  // the offset in the base, with azimuths measured from this edge. Holds -1 if the edge cannot be used.
   std::vector<double> differences_;
 };
 

@@ -9,8 +9,8 @@
 ///
 /// An azimuth is the angle around the sum at which an offset points. A key is a target at weight 1. Azimuths are
 /// measured from the edge for which the offsets of an element at all keys differ least from the offset of the base. If
-/// no edge can be used at every key, they are measured from a direction that turns along with the sum by the smallest
-/// rotation.
+/// no edge can be used at every key, azimuths are measured from a direction that turns along with the sum by the
+/// smallest rotation.
 ///
 /// Unknown    If no target stores normals that tell rules apart, the motion of an offset is unknown. The truth is then
 ///            the sum by area, rotated as in the base, and can be computed exactly.

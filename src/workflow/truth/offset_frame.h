@@ -86,10 +86,10 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// Moves the offset of the base normal to a key, and returns the angle in radians between the result and the stored
-/// normal at the key. Measures azimuths from each edge in turn, and returns the smallest angle. In the base,
-/// base(vertex) returns positions, z0 is the unit sum, and s0 is the stored normal; at_key(vertex), z and s are the
-/// same at the key.
+/// Moves the offset of the base normal to a key (a target at weight 1), and returns the angle in radians between the
+/// result and the stored normal at the key. Measures azimuths from each edge in turn, and returns the smallest angle.
+/// In the base, base(vertex) returns positions, z0 is the unit sum, and s0 is the stored normal; at_key(vertex), z and
+/// s are the same at the key.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

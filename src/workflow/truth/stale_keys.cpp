@@ -70,7 +70,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// Facts about the vertices of one connected part of the mesh whose sums of face normals a target turns.
+// Measures of how a target turns one connected part of the mesh, over the vertices whose sums of face normals turn.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians: the turn of each vertex that turns, and the error of its normal
   double together = 0, of_surface = 0, of_stored = 0;
@@ -157,8 +157,8 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  // A class is a set of vertices that share an element. For each class, the vertex with which its other vertices are
-  // compared.
+  // A class is a set of vertices that share an element. first_of has for each class the vertex with which the other
+  // vertices of the class are compared.
   std::vector<std::uint32_t> first_of = vertex_of;
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);

@@ -43,7 +43,7 @@ class StaleKeys {
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {
     return !stale_[target].empty() && stale_[target][part_of_vertex_[vertex]];
   }
-  /// Returns true if the target is stale on all parts of the mesh that it turns.
+  /// Returns true if the target is stale on all parts of the mesh that the target turns.
   [[nodiscard]] bool is_stale_everywhere(std::size_t target) const { return is_all_stale_[target]; }
   [[nodiscard]] const std::vector<StaleKey>& list() const noexcept { return list_; }
 

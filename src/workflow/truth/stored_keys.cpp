@@ -19,8 +19,8 @@ double weight_at_key(const GltfExtraTarget& extra, std::size_t target) {
   return weight;
 }
 
-// Takes the pose in which `target` has weight 1 and all other targets of the author have weight 0. Calls visit(target,
-// weight) for `target` and all correction targets that change normals in this pose.
+// Calls visit(target, weight) for `target` and for all correction targets that change normals in the pose in which
+// `target` has weight 1 and all other targets of the author have weight 0.
 template <class Visit>
 void for_shown_at_key(const GltfShading& shading, std::size_t target, const Visit& visit) {
   if (!shading.normal_deltas[target].empty()) visit(target, 1.0);

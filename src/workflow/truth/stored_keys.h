@@ -22,14 +22,14 @@ class StoredKey {
  public:
   /// Reads the base.
   explicit StoredKey(const GltfShading& shading);
-  /// Reads a target at weight 1.
+  /// Reads the positions and stored normals of a target at weight 1.
   StoredKey(const GltfShading& shading, std::size_t target);
 
   [[nodiscard]] Vec3d position(std::uint32_t vertex) const noexcept {
     const float* const p = (moved_.empty() ? shading_->set.base : moved_).data() + 3 * std::size_t{vertex};
     return {p[0], p[1], p[2]};
   }
-  /// Returns the normal of a vertex as a viewer renders it. The normal has any length.
+  /// Returns the normal of a vertex as a viewer renders it. The normal need not have unit length.
   [[nodiscard]] Vec3d normal(std::uint32_t vertex) const noexcept;
   /// Tells whether the target changes the stored normal of the vertex.
   [[nodiscard]] bool turns(std::uint32_t vertex) const noexcept;

@@ -35,13 +35,14 @@ class PlayedTrack {
   /// weights just after the jump, or just before the jump if just_before is true.
   void at(double time, bool just_before, std::span<double> weights) const;
 
-  /// Returns true if the viewer plays the weights that glTF specifies, except for rounding and weights that it drops.
+  /// Returns true if the viewer plays the weights that glTF specifies, except for rounding and weights that the viewer
+  /// drops.
   [[nodiscard]] bool is_as_specified() const noexcept { return as_specified_; }
 
  private:
-  // Computes the weights of one sample of a resampled track.
+  // Computes the weights of one sample of a track that the viewer samples again at fixed steps.
   void sample(double index, std::span<double> weights) const;
-  // Computes the weights of a cubic spline by the viewer's own rule.
+  // Computes the weights of a cubic spline as the viewer computes them, which is not as glTF specifies.
   void play_spline(double time, bool just_before, std::span<double> weights) const;
 
   Viewer viewer_;

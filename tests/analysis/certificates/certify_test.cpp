@@ -51,8 +51,8 @@ std::size_t wanted_elements() {
   return std::clamp<std::size_t>(cases, 600, 200000);
 }
 
-// A scheme that is prepared for the faces of a segment, with the control normals of these faces and the bounds of their
-// errors.
+// A scheme that is prepared for the faces of a segment, with the control normals of these faces and the bounds of the
+// scheme's errors.
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
   std::vector<ControlNormals> normals;
@@ -230,8 +230,8 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // The scheme linear:scaled chooses the length of one end normal so that its straight line has the directions of n(t).
-  // Only rounding errors remain.
+  // The scheme linear:scaled chooses the length of one end normal so that the line between the end normals has the
+  // directions of n(t). Only rounding errors remain.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -400,7 +400,7 @@ TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   EXPECT_GT(known, 500u) << "control normals that were made of integers have small bounds";
 }
 
-// ---- schemes that somebody may add ----------------------------------------------------------------------------------
+// ---- schemes that are not part of the library -----------------------------------------------------------------------
 
 // Eases t at both ends: returns 3 t^2 - 2 t^3.
 double eased(double t) { return t * t * (3 - 2 * t); }
@@ -454,7 +454,7 @@ class LongSum {
   }
 };
 
-// A scheme that follows an arc in eased time. certify() knows no formula for this curve.
+// A scheme that follows a great arc, at the eased time. certify() knows no formula for this curve.
 class EasedArc {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 7; }

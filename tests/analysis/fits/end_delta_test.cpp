@@ -48,7 +48,7 @@ Vector exact(const ControlNormals& n, Real w) {
 
 // Returns the largest angle, in radians, between the exact normals n(w) and the straight line `from` to `to`. The times
 // w are a grid that is also dense near both ends. The result may be smaller than the true largest angle by about a
-// thousandth.
+// thousandth of this angle.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;
@@ -169,7 +169,7 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);
-  // The function also accepts control normals that are all zero.
+  // best_end_delta() also accepts control normals that are all zero.
   const EndDelta nothing = best_end_delta({});
   EXPECT_EQ(nothing.delta, Vec3d{});
   EXPECT_EQ(nothing.scale, 1);

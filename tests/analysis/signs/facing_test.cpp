@@ -39,8 +39,8 @@ test::WholeVector whole(const Vec3d& v) {
 }
 test::WholeVector whole(const Vec3f& v) { return whole(to_double(v)); }
 
-// Returns the polynomial n(t) . w(t), where w(t) points from the first corner of the face to the viewer. Computes it
-// from positions alone: its values at t = -1, 0, 1 and 2, where the corners are integers, determine it.
+// Returns the polynomial n(t) . w(t), where w(t) points from the first corner of the face to the viewer. Uses positions
+// alone: the values at t = -1, 0, 1 and 2, where the corners are integers, determine the polynomial.
 WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
   const auto vertices = segment.topology->face(face);
   std::array<test::Whole, 4> values;
@@ -421,8 +421,7 @@ TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
       ++open;
       EXPECT_LT(signs[one.faces[0]] * signs[one.faces[1]], 0);
     }
-    // The test counts the edges whose faces show different sides with a map of edges. The library must find the same
-    // number.
+    // Counts, with a map of edges, the edges whose faces show different sides. The library must find the same number.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<int>> edges;
     for (std::size_t f = 0; f < faces; ++f) {
       const auto face = motion.topology.face(f);

@@ -33,8 +33,8 @@ TEST(ReadMd2, reads_frames_as_keyframes_and_turns_the_triangles_round) {
 }
 
 TEST(ReadMd2, clips_are_apart) {
-  // Returns, as text, the segments and the kind of the motion of an MD2 model whose frames have the given names, or the
-  // error.
+  // Reads an MD2 model whose frames have the given names. Returns the segments and the kind of its motion as text, or
+  // the error.
   const auto segments_of = [](const std::vector<std::string>& names) {
     const std::string small = test::small_md2(), head = small.substr(0, 80), frame = small.substr(80, 52);
     std::string bytes = head;

@@ -1,5 +1,5 @@
-// Reads caches and models from other projects. Skipped unless the environment variable CHRONORMAL_DATA names their
-// folder.
+// Reads caches and models from other projects. The tests are skipped unless the environment variable CHRONORMAL_DATA
+// names the folder of these files.
 #include <gtest/gtest.h>
 
 #include <cstdio>

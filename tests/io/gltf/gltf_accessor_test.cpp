@@ -57,7 +57,7 @@ TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
   EXPECT_EQ(geometry_of(builder).normals, normals);
 
-  // The buffer view now ends with the last position, so its last stride is incomplete.
+  // Ends the buffer view with the last position, so that its last stride is incomplete.
   builder.json["bufferViews"][view]["byteLength"] = 24 * 3 + 12;
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);

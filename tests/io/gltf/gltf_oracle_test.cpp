@@ -1,5 +1,5 @@
-// Compares the glTF reader with tinygltf and Assimp, on files of other projects. Skipped unless CHRONORMAL_DATA names
-// the folder of these files.
+// Compares the glTF reader with tinygltf and Assimp, on files of other projects. The test is skipped unless the
+// variable CHRONORMAL_DATA names the folder of these files.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>

@@ -349,8 +349,8 @@ struct Compressed {
   }
 };
 
-// Returns the weight of joint 0 and that of joint 1 for a vertex. Computes both from the data of the file, without code
-// of src/.
+// Returns the weights of joint 0 and joint 1 for a vertex. Computes these weights from the data of the file, without
+// code of src/.
 std::pair<double, double> expected_shares(std::size_t vertex) {
   std::pair<double, double> of_joints;
   double sum = 0;

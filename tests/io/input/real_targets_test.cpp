@@ -1,5 +1,5 @@
-// Reads the face of MPFB, an add-on for Blender, and its 102 targets. Skipped unless the environment variable
-// CHRONORMAL_DATA names the folder of these files.
+// Reads the face of MPFB, an add-on for Blender, and its 102 targets. The test is skipped unless the environment
+// variable CHRONORMAL_DATA names the folder of these files.
 #include <gtest/gtest.h>
 #include <zlib.h>
 

@@ -103,8 +103,8 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   }
 }
 
-// A part of a sequence follows the curves through all keyframes of the sequence, so its pieces are the same as those of
-// the whole.
+// A part of a sequence follows the curves through all keyframes of the sequence, so its pieces are also pieces of the
+// whole sequence.
 TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(14))) {

@@ -90,8 +90,8 @@ TEST(JsonText, added_members_and_items_take_the_blanks_of_the_last_sibling) {
   EXPECT_EQ(append("[ ]", "", "3"), "[3 ]");
   EXPECT_EQ(changed("{ }", {{"/a", "1"}, {"/b", "2"}}), R"({"a":1,"b":2 })");
   EXPECT_EQ(changed("[]", {{"", "1", true}, {"", "2", true}}), "[1,2]");
-  // append() puts as many blanks before a new element as the array has before its other elements, unless these are very
-  // many blanks.
+  // append() puts as many blanks before a new element as the array has before its other elements, unless this number of
+  // blanks is very large.
   const std::string long_one = "[" + std::string(1000, ' ') + "1]";
   EXPECT_EQ(append(long_one, "", "3"), long_one.substr(0, 1002) + ",3]");
 }

@@ -281,9 +281,10 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
 }
 
 // One face is a polygon that winds around a small triangle many times. Targets move the polygon far away, where the
-// triangle is smaller than one ulp, and back. All corners of the polygon then coincide. Its area is then only rounding
-// error. Its edges are zero, so only the square of the rounding error of positions bounds the error of the area. If the
-// polygon has many turns, this bound exceeds the area of the adjacent triangle, the only face with a direction.
+// triangle is smaller than one ulp, and back. All corners of the polygon then coincide, and the computed area of the
+// polygon is only rounding error. The edges of the polygon are zero, so the error of this area is bounded only by the
+// square of the rounding error of positions. If the polygon has many turns, this bound exceeds the area of the adjacent
+// triangle, the only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
   constexpr float kFar = 1.5F * 0x1p52F;  // an ulp of double is 1 at this distance
   for (const int turns : {0, 10}) {

@@ -48,8 +48,8 @@ double used_up(const Candidate& candidate, BlendPath path) {
   return exact::is_zero(expected) ? 4 / kPromised : exact::angle(u[0], u[1], u[2], expected) / kPromised;
 }
 
-// Makes a face that nearly collapses: the first target moves the last corner almost onto the line through two others.
-// In some cases, all corners also move far away and back.
+// Makes a face that nearly collapses: the first target moves the last corner almost onto the line through two other
+// corners. In some cases, all corners also move far away and back.
 Candidate near_a_collapse(fixtures::Random& random) {
   Candidate result;
   const auto corners = static_cast<std::uint32_t>(3 + random.below(2));

@@ -40,8 +40,8 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys. All three are doubles. The differences between the time and the keys are small integers
-// times powers of two, so local times are exactly known fractions.
+// A time between two keys. The time and both keys are doubles. The differences between the time and the keys are small
+// integers times powers of two, so local times are exactly known fractions.
 struct Times {
   double start, time, end;
   double before, after;  // time - start and end - time, as multiples of the same unit

@@ -109,7 +109,7 @@ double hardest_time(const ControlNormals& normals) {
 }
 
 // Returns the times at which a face is tested: both ends, the time with the smallest |n(t)| and times near it, and
-// random times as float32 and double.
+// random times in float32 and in double.
 std::vector<double> times(const ControlNormals& normals, fixtures::Random& random) {
   const double hard = hardest_time(normals);
   std::vector<double> result{0, 1, 0.5, 1.0 / 3, 0x1p-30, 1 - 0x1p-30, hard};

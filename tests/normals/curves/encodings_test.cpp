@@ -164,8 +164,8 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// The kernels compute the integers of an encoded normal differently from the functions for single normals, so these
-// integers may differ by 1.
+// The kernels compute the integers of an encoded normal differently from the functions for single normals, so the
+// integers of a kernel may differ by 1.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;

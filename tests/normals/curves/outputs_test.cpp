@@ -56,8 +56,8 @@ class Guarded {
   }
   [[nodiscard]] T* data() { return words_.data() + begin_; }
   [[nodiscard]] std::span<T> span() { return {data(), count_}; }
-  // Tells whether no words around the results have changed, and among the results only words that `may_be_written`
-  // allows.
+  // Returns true if the words around the results are unchanged, and among the results only words have changed that
+  // `may_be_written` allows.
   [[nodiscard]] bool is_intact(const std::function<bool(std::size_t)>& may_be_written = nullptr) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const bool inside = i >= begin_ && i < begin_ + count_ && (!may_be_written || may_be_written(i - begin_));

@@ -153,7 +153,7 @@ TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close)
 }
 
 TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbours_in_the_file) {
-  // In the list of faces, the perpendicular face is now between the two faces that lie in one plane.
+  // In the list of faces, the perpendicular face comes between the two faces that lie in one plane.
   const Motion motion = test::with_faces_in_order(pages({0, 180, 90}), {0, 2, 1});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[7]);

@@ -131,7 +131,7 @@ RC_GTEST_PROP(WeightingFit, the_bound_is_never_below_the_error_of_polygons, ()) 
 }
 
 TEST(WeightingFit, the_bound_is_never_below_the_error_where_faces_nearly_collapse) {
-  // Two triangles share an edge, and one of the two nearly collapses.
+  // Two triangles share an edge, and one of these triangles nearly collapses.
   fixtures::Random random(77);
   for (const double gap : {1e-1, 1e-3, 1e-6}) {
     const Motion lone = fixtures::collapsing_soup(gap, 40, 5);
@@ -179,8 +179,8 @@ TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in
         EXPECT_LT(angle_between(normal_at(fit.normals[e], t), truth[e]), 1e-12);
     }
   }
-  // By every weighting, a vertex with a single face has the direction of the normal of this face. The length is the
-  // same as with area weights.
+  // By every weighting, the normal of a vertex with a single face has the direction of the normal of this face, and the
+  // same length as with area weights.
   const Motion lone = fixtures::moderate_soup(50);
   const auto exact = all_group_control_normals(lone.segment(0), vertices_of(lone));
   for (const Weighting weighting : kFitted) {

@@ -62,8 +62,8 @@ TEST(ConesOfThree, flags_what_has_no_direction) {
   cones_of_three(normals.data(), normals.size(), kNormalShare, cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b110011110);
   // Bit i of flags[0] is set if the kernel cannot make the cone of element i. The kernel computes the control normals
-  // of the curve between two times. For element 6, {x, -x, x}, one of these is zero only if the part contains t = 1/2,
-  // where n(t) is zero. Lengths far below 2^-1000 count as uncertain.
+  // of the curve between two times. For element 6, {x, -x, x}, one of the computed normals is zero only if the part
+  // contains t = 1/2, where n(t) is zero. Lengths far below 2^-1000 count as uncertain.
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0, 0.25), cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b10011100);
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0.25, 0.5), cones.data(), flags.data());

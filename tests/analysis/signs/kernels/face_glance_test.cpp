@@ -52,8 +52,8 @@ long double angle_of(const Vec3d& a, const Vec3d& b) {
   return std::atan2(std::sqrt(x * x + y * y + z * z), along);
 }
 
-// Checks all that the glance claims about usual faces, which are the faces that it does not report as unusual. Returns
-// the number of usual faces.
+// Checks all that the glance claims about usual faces, which are the faces that the glance does not report as unusual.
+// Returns the number of usual faces.
 std::size_t check_usual(const Segment& segment, const GlanceLimits& limits, const char* name) {
   std::size_t usual = 0;
   const std::vector<EdgedTile> tiles = tiles_of(segment);

@@ -1,6 +1,6 @@
 // Compares the certificates that the kernel computes for sixteen elements at once with the certificates of single
 // elements. A certificate tells whether float32 or double is accurate enough. The test elements are close to the limits
-// of both.
+// of float32 and of double.
 
 #include "normals/curves/kernels/certify.h"
 
