@@ -52,7 +52,6 @@ class Cli : public testing::Test {
     text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
     return text.str();
   }
-  // Writes two keyframes, a.obj and b.obj.
   void write_two_frames() const {
     write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write("b.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");

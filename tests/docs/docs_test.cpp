@@ -83,8 +83,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// Runs a command, with the program and the examples that were built together with this test, in the folder of the
-// document. Tables may be as wide as a page.
+// Runs a command in the folder of the document, with the program and the examples that were built together with this
+// test. Tables may have up to 128 columns, the width of a page.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
   // If npm has not built the page of reports, a placeholder replaces it: the content of the page does not matter here.

@@ -50,8 +50,8 @@ class Killed : public testing::TestWithParam<Command> {
     ASSERT_GT(calls_, 20U);
   }
 
-  // Runs the command. `layer` sets environment variables and ends with the name of the variable for the fault layer,
-  // whose path is appended. If `layer` is empty, runs without the fault layer.
+  // Runs the command. `layer` has the environment variables of the fault layer, and ends with LD_PRELOAD=, after which
+  // run() puts the path of the layer. If `layer` is empty, runs without the fault layer.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
     // The second command, `exit`, makes the shell run the program in a child process. The shell can then report how the

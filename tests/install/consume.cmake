@@ -1,6 +1,6 @@
 # cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a
-# project of a user (CMakeLists.txt beside this file) that gets chronormal in the way FROM. For `package`, chronormal is
-# first installed from BUILD into a separate folder.
+# project of a user (CMakeLists.txt beside this file) that gets chronormal in the way that FROM names. For `package`,
+# chronormal is first installed from BUILD into a separate folder.
 cmake_minimum_required(VERSION 3.22)  # without policies, "folder" below would mean the variable of that name
 set(folder ${BUILD}/consume_${FROM})
 file(REMOVE_RECURSE ${folder})

@@ -30,8 +30,8 @@ const std::vector<std::string> kSchemes = {
 
 constexpr std::size_t kElements = 150;
 
-// Faces of several kinds: some move much, some little, some rest, and the normals of some become their opposites. Every
-// tenth face has no area at any time.
+// Faces of several kinds: some move much, some move little, some rest, and some turn over. Every tenth face has no area
+// at any time.
 struct Subject {
   Subject() : normals(kElements) {
     fixtures::Random random(5);

@@ -1,5 +1,5 @@
 /// Makes blend shapes for tests, and computes their normals from blended positions, in rational numbers or in long
-/// double. The vector area of a polygon is the sum of p_i x p_{i+1}. Unlike the library, this file uses neither fans of
+/// double. The normal of a polygon is the sum of p_i x p_{i+1}. Unlike the library, this file uses neither fans of
 /// triangles nor products of targets.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
@@ -178,7 +178,7 @@ using ExactPositions = std::vector<exact::Vector>;
 }
 
 /// Returns the same normals as exact_normals(), in long double, for sets that are too large for rational numbers.
-/// Computes the vector area of each face relative to one of its corners.
+/// Computes the normal of each face from positions relative to one of its corners.
 [[nodiscard]] inline std::vector<reference::Vector> real_normals(const BlendSet& set, const NormalGroups* groups,
                                                                  std::span<const double> weights) {
   std::vector<reference::Vector> positions;

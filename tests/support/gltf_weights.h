@@ -23,7 +23,7 @@ namespace chronormal::test {
     return static_cast<long double>(values.at(index));
   };
   constexpr std::size_t kIn = 0, kValue = 1, kOut = 2;
-  // `next` is the first key after the time.
+  // `next` is the index of the first key after the time, or the number of keys.
   const auto after = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < key; });
   const auto next = static_cast<std::size_t>(after - times.begin());
   std::vector<double> weights;
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return weights;
 }
 
-/// Returns all positions of a motion at a time, on the straight line between two keyframes. Before the first and after
-/// the last keyframe, returns the positions of that keyframe.
+/// Returns all positions of a motion at a time, on the straight line between two keyframes. Before the first keyframe,
+/// returns the positions of the first; after the last keyframe, returns the positions of the last.
 [[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
   for (const Motion::SegmentKeys& segment : motion.segments) {
     const Motion::Keyframe& from = motion.keyframes.at(segment.from);

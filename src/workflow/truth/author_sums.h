@@ -36,7 +36,7 @@
 
 namespace chronormal::inline internal {
 
-/// A weighted sum of face normals, with the size of its terms.
+/// A weighted sum of face normals, with the lengths of its terms and of the face normals.
 struct AuthorSum {
   Vec3d normal;
   double terms = 0;  ///< the sum of the lengths of its terms
@@ -85,7 +85,8 @@ class Polygons {
   // The lists below are empty until triangles are joined. first_ has for each triangle the first triangle of its
   // polygon. count_ has, at the index of this first triangle, the number of triangles in the polygon.
   std::vector<std::uint32_t> first_, count_;
-  // For the first triangle of each larger polygon, the place in loops_ at which the corners of the polygon begin.
+  // loop_of_ has, at the index of the first triangle of each larger polygon, the place in loops_ at which the corners
+  // of this polygon begin.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles
   std::size_t joined_ = 0;

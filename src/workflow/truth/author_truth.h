@@ -112,7 +112,7 @@ class AuthorTruth {
     return size * internal::with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
   }
   /// Call visit(i, truth) for the i-th of the given elements, or visit(element, truth) for all elements. `truth` is the
-  /// true normal. The calls run on all cores, in no order.
+  /// true normal. The calls run on all cores, in any order.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Pose& pose,
                 const Visit& visit) const {

@@ -49,8 +49,8 @@ class StaleKeys {
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  // For each target, a list that is true for each part of the mesh on which the target is stale. The list is empty if
-  // the target is stale nowhere.
+  // stale_ has for each target a list with an entry for each part of the mesh, which is true if the target is stale on
+  // that part. The list is empty if the target is stale nowhere.
   std::vector<std::vector<bool>> stale_;
   std::vector<bool> is_all_stale_;  // for each target, true if it is stale wherever it turns the mesh
   std::vector<StaleKey> list_;

@@ -29,9 +29,9 @@ float half(float value) noexcept {
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
 
-// Rounds a number to a signed integer that represents [-1, 1], and returns the number that the integer stands for.
-// Rounds ties away from zero. Integers of 9 to 15 bits are stored in 16 bits. The upper bits are repeated in the unused
-// lower bits, so that 1 stays 1.
+// Limits a number to [-1, 1], rounds the result to a signed integer of `bits` bits, and returns the number that this
+// integer stands for. Rounds ties away from zero. Integers of 9 to 15 bits are stored in 16 bits. The upper bits are
+// repeated in the unused lower bits, so that 1 stays 1.
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;

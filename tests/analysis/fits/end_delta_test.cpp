@@ -84,7 +84,6 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
         triangle(random, std::array{0.05, 0.3, 1.0, 3.0}[static_cast<std::size_t>(round % 4)]);
     const Vector u0 = reference::normalised(real(normals.n0)), u1 = reference::normalised(real(normals.n1));
     const EndDelta found = best_end_delta(normals);
-    // Searches a coarse grid of scales first, then a fine grid around the best scale of the coarse grid.
     Brute brute = brute_best(normals, u0, u1, 6, 60, 100);
     for (int i = -20; i <= 20; ++i) {
       const Real s = brute.scale * std::exp(Real(i) / 100);

@@ -168,7 +168,7 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // An animation whose parts are all skipped keeps its number, but reading this animation is an error.
+    // An animation whose parts are all skipped keeps its index, but reading this animation is an error.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("drives no morph targets"), std::string::npos) << error.text();
     // The targets can still be read without the animation.

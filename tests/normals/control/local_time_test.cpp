@@ -95,7 +95,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
 }
 
 // Returns the exact sum of the normals of some faces at times.time, in rational numbers. If this sum is zero, returns
-// the sum shortly before.
+// the sum at a slightly earlier time.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
   const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };

@@ -262,7 +262,6 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   EXPECT_GT(bending, 5000U);
 }
 
-// Tests very large tolerances, up to infinity.
 TEST(CompactCurves, keep_tolerances_without_measure) {
   fixtures::Random random(76);
   for (const double tolerance : {0.2, 0.3, 0.5, 1.0, 1.5, 2.5, 100.0, std::numeric_limits<double>::infinity()}) {

@@ -73,7 +73,6 @@ void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
     curves.normals(0.34375, packed);
     for (const float v : results.xyz) hash.add(v);
   }
-  // Evaluates the curves at three times t in one call.
   results.three.resize(9 * n);
   const double times[] = {0.125, 0.5, 0.9375};
   VectorView<float> three[3];

@@ -1,5 +1,5 @@
 // Tests the quadratic curves that approximate weighted normals. The stated bound must never be below the error of the
-// curve, and must not be far above it.
+// curve, and must not be far above this error.
 
 #include "chronormal/normals/weighting.h"
 
