@@ -4,7 +4,7 @@
 # Each part has a line with four fields: its name; the minutes that it takes from scratch on two idle cores; the
 # sections of tools/packages.txt that it needs besides [run] and [test] ("-" for none); and a pattern of files ("-" for
 # none). If a change touches such a file, .ci/run runs the part at once, even if it is not the turn of this part. The
-# minutes are printed beside the measured ones; no part fails because of them.
+# expected minutes are printed beside the measured minutes; no part fails because of them.
 parts_table='
 data        3   -                 -
 slow        4   -                 ^tests/(faults/|support/cpu_time)|^src/io/bytes/output_file

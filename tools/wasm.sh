@@ -46,7 +46,8 @@ build_wasm() {
   build_report_page || return 1  # the page that `chronormal report` needs
   mkdir -p "$build"
   (
-    # Uses Debian's builds of the system libraries of Emscripten, which also exist with support for exceptions.
+    # Uses the system libraries of Emscripten as Debian has built them, since these builds also exist with support for
+    # exceptions.
     export NODE_PATH=/usr/share/nodejs EM_NODE_JS
     EM_NODE_JS=$(command -v node)
     unset CMAKE_CXX_COMPILER_LAUNCHER

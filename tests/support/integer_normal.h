@@ -1,9 +1,10 @@
-/// Computes normals of moving polygons at one t in integers of any size, fast enough for millions of normals.
+/// Computes normals of moving polygons at a time t by integer arithmetic of any size, fast enough for millions of
+/// normals.
 ///
-/// A float is an integer times 2^-149, and a double t is T 2^-e for an integer T. The corners at t are therefore (2^e -
-/// T) p + T q in units of 2^(-149 - e), and their cross products are integers as well. GMP computes with these
-/// integers, and only the direction of the result is rounded to double. exact_normal.h computes the same normals in
-/// rational numbers, which takes a hundred times as long.
+/// A float is an integer times 2^-149, and a double t is T 2^-e for an integer T. In units of 2^(-149 - e), a corner
+/// that moves from p to q is at (2^e - T) p + T q, where p and q are integers. Cross products are therefore integers as
+/// well. GMP computes with these integers, and only the direction of the result is rounded to double. exact_normal.h
+/// computes the same normals in rational numbers, which takes a hundred times as long.
 ///
 /// If n(t) = 0, the result is the direction of n slightly earlier or, at t = 0, slightly later. The time is changed by
 /// at most 2^-1500 of the segment, so the first term of n that is not zero is far larger than all later terms.
@@ -84,7 +85,7 @@ class IntegerNormals {
     }
   }
 
-  /// Returns n(t) of all faces.
+  /// Returns the normal n(t) of every face at this time.
   [[nodiscard]] std::vector<IntegerVector> at(const IntegerTime& time) const {
     std::vector<IntegerVector> corners(from_.size()), normals(segment_.topology->face_count());
     const mpz_class s = (mpz_class(1) << time.e) - time.t;

@@ -18,8 +18,8 @@ namespace chronormal::test {
 
 enum class LargePolygons {
   kAlone,  ///< a single polygon
-  /// Two polygons back to back. The normals of their vertices cancel almost completely, so only exact arithmetic finds
-  /// the directions.
+  /// Two polygons back to back. At each vertex, the normals of the two polygons cancel almost completely, so only exact
+  /// arithmetic finds the direction of their sum.
   kPillow,
   kPrism,  ///< two polygons, joined by a band of quadrilaterals
 };

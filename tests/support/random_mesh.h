@@ -15,8 +15,8 @@
 
 namespace chronormal::test {
 
-/// Makes a mesh of 1 to 20 vertices and 1 to 20 faces with 3 to 6 corners. The bits of each coordinate are random,
-/// among all finite float32 values. One mesh in four has only triangles.
+/// Makes a mesh of 1 to 20 vertices and 1 to 20 faces with 3 to 6 corners. Each coordinate has random bits, so it may
+/// be any finite float32. One mesh in four has only triangles.
 [[nodiscard]] inline MeshFrame random_mesh() {
   const auto vertex_count = *rc::gen::inRange<std::size_t>(1, 21);
   const auto any_bits = rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>());

@@ -15,8 +15,8 @@
 
 namespace chronormal::test {
 
-/// Makes a motion with 2 to 5 keyframes whose times are float32. The bits of each coordinate are random, among all
-/// finite float32 values. All faces have the same number of corners.
+/// Makes a motion with 2 to 5 keyframes whose times are float32. Each coordinate has random bits, so it may be any
+/// finite float32. All faces have the same number of corners.
 [[nodiscard]] inline Motion random_motion(bool equal_steps) {
   const MeshFrame mesh = random_mesh();
   const auto corners = *rc::gen::inRange<std::size_t>(3, 6);

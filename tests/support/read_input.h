@@ -26,7 +26,7 @@ namespace chronormal::test {
   return options;
 }
 
-/// Returns the options that open a base mesh and its morph targets. `base` and `names` are the files.
+/// Returns the options that open the file `base` as a base mesh, and the files `names` as its morph targets.
 [[nodiscard]] inline InputOptions targets_over(std::string base, std::vector<std::string> names) {
   InputOptions options = files(std::move(names));
   options.base = std::move(base);

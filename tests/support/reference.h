@@ -44,10 +44,10 @@ using VectorD = Vec<double>;  ///< in double, for the dense searches, which comp
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// If the angle between two ends differs from half a turn by less than this limit, in radians, rounding decides which
-/// great circle joins the ends.
+/// If the angle between two unit vectors differs from half a turn by less than this limit, in radians, rounding decides
+/// which great circle joins the vectors.
 inline constexpr Real kNearAntipodal = 1e-6L;
-/// The distance in radians below which two points count as one when a circle is put through them.
+/// If two points on the unit sphere are closer than this distance, in radians, they count as one point of a circle.
 inline constexpr Real kNearCoincident = 1e-6L;
 /// Below this angle, in radians, slerp and normalised linear interpolation differ by far less than the precision of
 /// float32.
@@ -191,7 +191,8 @@ template <class Moving>
   return normalised(nodes->front());
 }
 
-/// Evaluates de Casteljau's algorithm on the sphere: replaces neighbours by their slerp until one vector is left.
+/// Evaluates de Casteljau's algorithm on the sphere: replaces neighbouring vectors by their slerp at t until one vector
+/// is left.
 [[nodiscard]] inline std::optional<Vector> spherical_de_casteljau(const std::vector<Vector>& polygon, Real t) {
   if (polygon.size() == 1) return polygon.front();
   std::vector<Vector> shorter;
@@ -366,8 +367,8 @@ template <std::size_t N>
   return 2 * kPi * (static_cast<Real>(z) / 0x1p64L);
 }
 
-/// Returns the frames of a triangle at t = 0 and at t = 1. `choice` is the rule for their tangents: "matrix", "edge",
-/// "polar" or "random".
+/// Returns the frames of a triangle at t = 0 and at t = 1. `choice` says how their tangents are chosen: "matrix",
+/// "edge", "polar" or "random".
 [[nodiscard]] inline std::optional<std::pair<Frame, Frame>> frames(std::string_view choice, const Triangle& triangle,
                                                                    std::uint64_t seed, const Place& place) {
   const auto normal0 = exact_unit_normal(triangle, 0);
@@ -428,7 +429,7 @@ struct Circle {
     return std::nullopt;
   }
   const Vector normal = cross(p, q);
-  // Computes the circumcentre of the three points.
+  // `arm` goes from the first point to the circumcentre of the three points.
   const Vector arm = scaled(1 / (2 * dot(normal, normal)),
                             add(scaled(dot(q, q), cross(normal, p)), scaled(dot(p, p), cross(q, normal))));
   Circle circle;
@@ -611,8 +612,9 @@ template <class F>
   return best;
 }
 
-/// Returns the global minimum of f between the first and the last point of a grid, whose points must ascend. Evaluates
-/// `coarse` at all points of the grid, and then refines the best few local minima with `fine`.
+/// Returns the global minimum of a function between the first and the last point of a grid, whose points must ascend.
+/// Evaluates an approximation of the function, `coarse`, at all points of the grid, and then refines the best few local
+/// minima with `fine`.
 template <class Coarse, class Fine>
 [[nodiscard]] double dense_minimum(const std::vector<double>& grid, Coarse&& coarse, Fine&& fine) {
   std::vector<double> values;
@@ -649,8 +651,8 @@ template <class Coarse, class Fine>
 
 /// Returns the smallest average error over the samples, in radians, that a dense search over all pairs of frames finds.
 /// Each pair of frames gives a circle of eq. 6 of the paper, which an angle phi selects. The normal runs at constant
-/// speed on the shorter arc of the circle, for which |phi| <= pi/2. Returns nothing if the ends coincide or are
-/// antipodal.
+/// speed on the shorter arc of the circle, for which |phi| <= pi/2. Returns nothing if the normals u0 at t = 0 and u1
+/// at t = 1 coincide or are antipodal.
 ///
 /// The search tries `density` values that are equidistant in phi, and as many that are equidistant in the direction in
 /// which the circle leaves u0. Equidistant directions are needed if u0 and u1 are close, since circles then differ
@@ -669,8 +671,8 @@ template <class Coarse, class Fine>
   for (std::size_t i = 0; i <= density; ++i) {
     const double even = quarter * (2 * static_cast<double>(i) / static_cast<double>(density) - 1);
     grid.push_back(even);
-    // If T is the angle between u0 and u1, the angle at u0 between the circle and the great circle is atan(-tan(phi)
-    // sin(T/2)).
+    // If T is the angle between u0 and u1, the circle and the great circle through u0 and u1 meet at u0 at the angle
+    // atan(-tan(phi) sin(T/2)).
     grid.push_back(std::atan2(std::sin(even), std::cos(even) * half_sine));
   }
   std::sort(grid.begin(), grid.end());

@@ -92,7 +92,7 @@ struct Corner {
   return scaled(corner_angle, weighting == "angle" ? normalised(area) : area);
 }
 
-/// Returns the normal at t of an element with these corners.
+/// Returns the normal at t of an element with these corners: the sum of the contributions of the corners.
 [[nodiscard]] inline Vector element_normal(const Mesh& mesh, const std::vector<Corner>& corners,
                                            const std::string& weighting, Real t) {
   Vector sum{};

@@ -59,8 +59,8 @@ class ReportFile {
                                 : keyframe_degrees(of, motion, place["sample"], place["vertex"]);
   }
 
-  /// Returns the number by which a page names a vertex: its label if the part has labels, otherwise its index in its
-  /// primitive.
+  /// Returns the number that the page shows for a vertex: a label if the part has labels, otherwise the index of the
+  /// vertex in its primitive.
   [[nodiscard]] std::size_t label(const Json& of, std::size_t vertex) const {
     if (!of["labels"].is_null()) return numbers<std::uint32_t>(of["labels"])[vertex];
     for (const Json& primitive : of["primitives"])
@@ -102,8 +102,8 @@ class ReportFile {
     return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   }
 
-  // Returns the normal of an element at these positions, by the weighting of the part. The length of the normal is not
-  // 1.
+  // Returns the normal of an element at these positions, by the weighting of the part. The normal is not scaled to
+  // length 1.
   [[nodiscard]] Point normal(const Json& of, const std::vector<Point>& positions, std::uint32_t element) const {
     const std::vector<std::uint32_t> triangles = numbers<std::uint32_t>(of["triangles"]),
                                      elements = numbers<std::uint32_t>(of["element"]),
@@ -175,8 +175,8 @@ class ReportFile {
     return result;
   }
 
-  // Adds the author's offset to a normal n. The offset consists of the angle between n and the result, and of the
-  // direction around n (the azimuth).
+  // Turns a normal n by the author's offset. The offset consists of the angle between n and the result, and of the
+  // azimuth (the direction around n) in which to turn.
   [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
                                   const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
     const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),

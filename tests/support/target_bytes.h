@@ -13,7 +13,7 @@
 
 namespace chronormal::test {
 
-/// A square of two triangles, as positions (4, 3) and as the text of an OBJ file.
+/// A square of two triangles: the x, y and z of four vertices, and the text of an OBJ file.
 inline const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 inline const std::string kSquareObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 

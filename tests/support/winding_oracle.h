@@ -1,6 +1,6 @@
 /// Computes winding numbers and crossings of moving points in integers and rational numbers, to check containment.
 ///
-/// A winding number is counted along a slanted half-line, unlike in the library, from the signs of integer
+/// Unlike the library, this file counts a winding number along a slanted half-line, from the signs of integer
 /// determinants. A determinant is zero if the half-line meets an edge or a vertex. In that case, the point is moved by
 /// a small step along x, a far smaller step along y and an even smaller step along z, and the winding number is counted
 /// again. Roots are isolated by Sturm's theorem in rational numbers.

@@ -1,6 +1,6 @@
 // A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is the
 // sum of the normals of all polygons around the point, weighted by the angles at their corners. Some normals are edited
-// as if by hand, differently in each key. A few of the edited normals point to the back of the sheet.
+// as if by hand, differently in each shape key. A few of the edited normals point to the back of the sheet.
 import { writeFile } from './fixtures.mjs';
 import { randomNumbers } from './random.mjs';
 

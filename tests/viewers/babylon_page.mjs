@@ -36,8 +36,8 @@ function toBase64(bytes) {
   return btoa(text);
 }
 
-// Moves all objects to their places at a time, in seconds, of an animation, by the animation group that the loader made
-// of the animation.
+// Poses the model as it is at `time`, in seconds, in an animation. Uses the animation group that the loader made of the
+// animation.
 export function play(model, animation, time) {
   model.scene.animationGroups.forEach((group) => group.stop());
   if (animation === null) return;

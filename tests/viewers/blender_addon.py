@@ -62,8 +62,8 @@ def everything():
 
 
 def models(folder, program, seed):
-    """Exports every model without the add-on, with the add-on switched off, before and after the panel has checked the
-    model, and with the add-on switched on."""
+    """Exports every model four times: without the add-on, with the add-on switched off, with the add-on switched off
+    after the panel has checked the model, and with the add-on switched on."""
     result = {}
     for name in blender_truth.MODELS:
         truth, how = blender_truth.make(int(seed), name)

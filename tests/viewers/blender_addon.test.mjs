@@ -24,8 +24,8 @@ const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// The largest permitted difference, in degrees, between the measurements of a pose by the panel and by this test. They
-// differ because the panel and the test match corners with vertices in different ways.
+// The largest permitted difference, in degrees, between the measurements of a pose by the panel and by this test. The
+// measurements differ because the panel and the test match corners with vertices in different ways.
 const AGREE = 0.02;
 
 // Models with edges that become hard by their angle, but only in deformed poses. Morph targets cannot represent such

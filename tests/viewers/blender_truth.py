@@ -298,8 +298,8 @@ def add_keys(o, draw, deformations):
 
 
 def animate(o, keys, draw, how):
-    """Adds keyframes. The first is the base. At each later keyframe, the next key has weight 1, and all other keys have
-    random weights up to 0.7."""
+    """Adds keyframes. The first keyframe is the base. At each later keyframe, the next key has weight 1, and all other
+    keys have random weights up to 0.7."""
     for n, frame in enumerate(KEYFRAMES):
         for i, key in enumerate(keys):
             key.value = 0 if n == 0 else 1 if (n - 1) % len(keys) == i else draw.uniform(0, 0.7)

@@ -41,7 +41,7 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// Checks that the audit of an animation finds about the errors that were measured with Blender's normals (`times`). The
+// Checks that the audit of an animation finds errors close to `times`, which were measured with Blender's normals. The
 // audit takes samples at all recorded times and at other times.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');

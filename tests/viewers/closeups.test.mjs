@@ -66,7 +66,7 @@ function mostTorn({ exported, truth, loops }) {
   return most;
 }
 
-// Returns a camera that looks at a place from the side to which its normal points.
+// Returns a camera that looks at the place `at`, roughly from the direction `from`.
 function cameraAt({ at, from, radius }) {
   const degrees = 35, distance = (NEAR * radius) / Math.tan((degrees * Math.PI) / 360);
   const direction = unit(from.map((x, c) => x + [0.2, 0.3, 0.25][c]));

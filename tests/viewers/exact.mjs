@@ -14,8 +14,8 @@ export function angle(a, b) {
   return (Math.atan2(length(cross(a, b)), dot(a, b)) * 180) / Math.PI;
 }
 
-// Turns v by the smallest rotation from the direction of `from` to the direction of `to`. Returns v if `from` or `to`
-// is zero, or if `from` and `to` are opposite, since no rotation is then the smallest.
+// Turns v by the smallest rotation from the direction of `from` to the direction of `to`. Returns v if there is no such
+// rotation, because `from` or `to` is zero or because they are opposite.
 function turned(v, from, to) {
   if (length(from) === 0 || length(to) === 0) return v;
   const a = scaled(from, 1 / length(from));

@@ -41,9 +41,9 @@ export function assertSameFigure(found, expected) {
 }
 
 /**
- * Compares the panel of a page with a figure: the sum q of the angles, in degrees, of each scheme in the table of the
- * panel; the places of the marks of normals; and the colour of the pixel at the mark of the exact normal in the saved
- * file.
+ * Compares the panel of a page with a figure. Checks the sum q of the errors of each scheme, in degrees, in the table
+ * of the panel, and the places at which normals are marked. In the saved file, checks the colour of the mark of the
+ * exact normal.
  * @param page a page of puppeteer whose viewer has a figure
  */
 export async function assertShown(page, expected) {

@@ -73,8 +73,8 @@ function withMaterial(bytes, pbrMetallicRoughness) {
   return result;
 }
 
-// Moves all objects to their places at a time, in seconds, of an animation, by the animator. At the end of an
-// animation, the animator starts again from the beginning.
+// Poses the model as it is at `time`, in seconds, in an animation. At the end of the animation, Filament's animator
+// starts again from the beginning.
 export function play({ animator }, animation, time) {
   if (animation !== null) animator.applyAnimation(animation, time);
 }

@@ -1,6 +1,6 @@
 // Compares how two programs decode the filters of EXT_meshopt_compression: chronormal, and the npm package
-// meshoptimizer, which runs in browsers. Normals must agree bit for bit. Each filter is applied to positions, since
-// `chronormal convert` can write positions.
+// meshoptimizer, which runs in browsers. Decoded normals must agree bit for bit. The test stores all data as positions,
+// since `chronormal convert` can write positions.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';

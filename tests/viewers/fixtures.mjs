@@ -146,8 +146,8 @@ export const fixtures = {
   spline: (path) =>
     writeFile(path, {
       primitives: [wave()],
-      // The values of the three keys are an in-tangent, a weight and an out-tangent each. Between the keys, the weight
-      // exceeds 0.8 and leaves [0, 1].
+      // Each of the three keys has an in-tangent, a weight and an out-tangent. Between the keys, the weight exceeds 0.8
+      // and leaves [0, 1].
       tracks: [{ node: 0, interpolation: 'CUBICSPLINE', times: [0, 1, 2], values: [0, 0, 6, 0, 0.8, -3, 0.4, 0.2, 0] }],
     }),
   step: (path) =>

@@ -4,8 +4,8 @@ import { drive } from '../../examples/drive.mjs';
 import { ExactNormals, angle, exactPositions, length } from './exact.mjs';
 import { nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 
-// If the sum of cross products at a vertex is shorter than this share of its longest sum, its direction is not
-// reliable.
+// If the sum of cross products at a vertex is shorter than this share of the longest sum at the vertex over all states,
+// its direction is not reliable.
 const NO_DIRECTION = 1e-4;
 
 export function timesOf(animation, count) {

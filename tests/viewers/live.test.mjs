@@ -169,7 +169,6 @@ describe('three.js', () => {
     mixer.update(0.1);
     draw(mesh);
     assert.deepEqual(weightsOf(mesh), [0.5, 0.25, 0.125, 0.25, 0.25]);
-    // A second mixer plays a clone of the mesh.
     const copy = mesh.clone(), other = new THREE.AnimationMixer(copy);
     other.clipAction(clips[0]).play();
     three.attach(copy);

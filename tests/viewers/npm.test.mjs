@@ -165,8 +165,8 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
-  // Inputs may have all of these names, although the program has a folder `out` of its own beside the inputs, in the
-  // file system inside the module (js/src/task.js).
+  // An input may have any of these names, although the file system inside the module also has a folder `out`, into
+  // which the program writes (js/src/task.js).
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
   }

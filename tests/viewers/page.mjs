@@ -119,8 +119,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
 };
 
 // Compares pictures of a file in a viewer with a still file, while several clips are blended: before and while
-// chronormal's package drives the correction targets. `weights` are the sums over the clips. In three.js, the mixer of
-// a clone of the model plays the clips.
+// chronormal's package drives the correction targets. `weights` has the weights of the targets in the blend. In
+// three.js, the mixer of a clone of the model plays the clips.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

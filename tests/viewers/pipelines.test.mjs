@@ -172,7 +172,7 @@ function blocksOfPage() {
   return blocks;
 }
 
-// Returns the tables about a file. Each has its columns, and {index, line} for each row.
+// Returns the tables about a file. Each table has its columns, and {index, line} for each row.
 function tablesOfPage(name) {
   const tables = [];
   lines.forEach((line, begin) => {

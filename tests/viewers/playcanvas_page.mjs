@@ -39,7 +39,7 @@ export async function load(bytes) {
   return { asset, entity };
 }
 
-// Moves all objects to their places at a time, in seconds, of an animation, by the animation component.
+// Poses the model as it is at `time`, in seconds, in an animation. Uses the animation component of PlayCanvas.
 export function play({ asset, entity }, animation, time) {
   if (animation === null) return;
   entity.removeComponent('anim');

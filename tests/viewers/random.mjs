@@ -1,4 +1,4 @@
-// Draws random numbers and directions. For the same seed, they are the same on every machine.
+// Draws random numbers and directions, which for the same seed are the same on every machine.
 import { length } from './exact.mjs';
 
 // Returns a function that draws numbers from 0 to 1 by the algorithm mulberry32.

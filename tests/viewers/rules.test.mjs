@@ -1,7 +1,9 @@
-// Tests how real viewers compute a normal from stored numbers, and a weight from a track. Compares their pictures with
-// rules that are computed in double. docs/viewers.md states the results. ctest runs this file as `in_viewers`.
+// Tests how real viewers compute a normal from stored numbers, and a weight from a track. The test evaluates the rules
+// (formulas) of the viewers in double, and compares the results with pictures. docs/viewers.md states the results.
+// ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  tests all viewers and rules, and not only the normals of Filament and PlayCanvas
+
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -50,7 +52,7 @@ const targetsOfLength = (lengthOf) => (normal, random) =>
 
 // The boards of squares. For each board, `deltas` computes the deltas of a square from its normal, and `weights` gives
 // the weights at a key of the track. If `free` is given, N + D_k does not have length 1. Filament then treats a frame
-// as orthonormal although it is not, and its error is at least `free` degrees.
+// that is not orthonormal as orthonormal, so the error of Filament is at least `free` degrees.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {

@@ -13,7 +13,7 @@ const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real da
 const { folder, remove, native, wasm } = install();
 after(remove);
 
-// Returns the paths of all files in a folder.
+// Returns the paths of all files in a folder and its subfolders, relative to the folder.
 const filesOf = (root) =>
   readdirSync(root, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())

@@ -1,5 +1,5 @@
 // Makes a still file from a moving file at one time, with the positions and the exact normals that the mesh has at this
-// time. A viewer's picture of the still file is what its picture of the moving file must look like.
+// time. A viewer should draw the moving file at this time exactly as it draws the still file.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';

@@ -22,7 +22,7 @@ export async function load(bytes) {
   return { scene, mixer, clips: gltf.animations };
 }
 
-// Moves all objects to their places at a time, in seconds, of an animation, by the animation mixer.
+// Poses the model as it is at `time`, in seconds, in an animation. Uses the animation mixer of three.js.
 export function play(model, animation, time) {
   model.mixer.stopAllAction();
   if (animation === null) return;

@@ -1,5 +1,5 @@
-// Tests the TypeScript types of the npm package. The types must match the arguments of its functions and the contents
-// of reports.
+// Tests the TypeScript types of the npm package. The types must match the arguments of the functions of the package,
+// and the contents of reports.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
 //   tests/viewers/types.test.mjs

@@ -46,8 +46,8 @@ ARTEFACTS = {
 # The artefacts that contain the components of the pages of web/.
 WITH_PAGE = ("program", "arm64", "windows", "deb", "npm", "page")
 
-# The artefacts whose programs the add-on for Blender contains. The keys are folders in the add-on; programs in all
-# other folders are those of "program".
+# The artefacts whose programs the add-on for Blender contains. The keys are folders in the add-on. All other folders
+# have the programs of the artefact "program".
 BLENDER_PROGRAMS = {"linux-arm64": "arm64", "windows-x64": "windows"}
 
 # The names that SPDX has for Debian's names of licences; and the licences of packages whose `copyright` names no

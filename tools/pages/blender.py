@@ -87,7 +87,7 @@ def save_window(name):
 
 
 def wait():
-    """Draws the window again and waits, since regions of the window slide in."""
+    """Requests that the window is drawn again. As one of `steps`, also gives regions of the window time to slide in."""
     for area in window().screen.areas:
         area.tag_redraw()
 

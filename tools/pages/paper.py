@@ -246,8 +246,8 @@ def measure_drift(page):
 # The next functions make section 4 of docs/paper.md.
 
 def zeros_of_squared_length(part):
-    """Returns the complex values of t at which n(t).n(t) = 0, four for each face. Also returns which of the four limits
-    the convergence (Runge 1901)."""
+    """Finds, for each face, the four complex values of t at which n(t).n(t) = 0. Returns the value that limits the
+    convergence of interpolation (Runge 1901), and its margin()."""
     c0, m, n1 = part.normals(0), 2 * part.normals(0.5) - (part.normals(0) + part.normals(1)) / 2, part.normals(1)
     c1, c2 = 2 * (m - c0), c0 - 2 * m + n1
     quartic = np.stack([dot(c2, c2), 2 * dot(c1, c2), dot(c1, c1) + 2 * dot(c0, c2), 2 * dot(c0, c1), dot(c0, c0)], axis=1)

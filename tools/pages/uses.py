@@ -57,7 +57,8 @@ def draw_cones(page):
         return curves, ends, angle(ends)[0], angle(ends).max(0), cn.cones(keyframes, faces), angle
 
     curves, ends, of_ends, farthest, found, _ = measured(0.6, 400)
-    # A good face for the picture clearly leaves the cone of its ends, and its own cone is not too wide.
+    # Selects the face whose normal leaves the cone of its ends the farthest. For a good picture, the cone of the
+    # interval must not be too wide, and the cone of the ends not too narrow.
     face = np.argmax(np.where((found["half_angle"] < 40) & (np.degrees(of_ends) > 8), farthest - of_ends, -1))
     seen, rim = flat(found["axis"][face])
     sphere.plot(*seen(rim(np.arcsin(found["sine"][face]))).T, color=EXACT, label="cone of the interval")

@@ -8,8 +8,8 @@ namespace chronormal::vtk {
 
 /// Removes the ghost cells that are more than `levels` levels away from the cells of the piece, and the points that
 /// only these cells use. A ghost cell is of level 1 if it shares a point with a cell of the piece, of level 2 if it
-/// shares a point with a ghost cell of level 1, and so on. Cells that are hidden but are no copies stay. O(levels x
-/// corners).
+/// shares a point with a ghost cell of level 1, and so on. Cells that are hidden but are no copies stay. Takes
+/// O(levels x corners) time.
 void keep_ghost_levels(vtkPolyData* piece, int levels);
 
 }  // namespace chronormal::vtk

@@ -197,8 +197,8 @@ struct Groups {
   // face of each element, in the same order both times.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
-    // A counting sort. ends[e + 1] first counts the faces of element e. Then ends[e] is the index of the first face of
-    // e, and at last the index after its last face.
+    // Sorts by counting: ends[e + 1] first counts the faces of element e. Then ends[e] is the index of the first face
+    // of e, and at last the index after its last face.
     for_pairs([this](std::size_t element, std::size_t) { ++ends[element + 1]; });
     for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
     faces.resize(ends.back());

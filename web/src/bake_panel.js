@@ -8,7 +8,7 @@ const VIEWERS = [
   ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
 ];
 
-/** The viewers that add up deltas. A plain bake is made for these viewers, and no other viewer becomes worse. */
+/** The viewers that add up deltas. If the user chooses no viewers, the file is baked for these viewers. */
 const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
 
 /**

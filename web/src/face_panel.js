@@ -1,5 +1,5 @@
 // Shows the panel of one face: Figures 1 to 3 of the paper for this face at any t. If the program is available, the
-// user can drag its corners.
+// user can drag the corners of the face.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
 import { faceOf, faceOfNumber, wayOf } from './faces.js';

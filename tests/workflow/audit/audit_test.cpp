@@ -131,7 +131,7 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
 }
 
 TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
-  // The target alone is judged up to weight 1. The expression sets its weight to 3.
+  // The target alone is judged up to weight 1. The expression sets the weight of the target to 3.
   const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
   EXPECT_EQ(result.findings[1].expression, 0U);
@@ -154,8 +154,8 @@ TEST(Audit, an_expression_that_moves_nothing_is_no_subject_and_one_animation_alo
 }
 
 TEST(Audit, flat_rule_shows_faces) {
-  // At weight 1, each face at the edge is at 45 degrees from the normal sum of vertices 1 and 2. Vertices 0 and 3 have
-  // no error.
+  // At weight 1, the two faces are perpendicular. The normals of vertices 1 and 2 are sums of both face normals, so
+  // each face normal is at 45 degrees from them. Vertices 0 and 3 have no error.
   const Audit result = audit_of(hinge().file(), {.rule = AuditRule::kFlat, .samples = 2});
   EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 are in both faces, vertex 3 in one
   EXPECT_NEAR(result.error.sum, 4 * 45, 1e-12);
@@ -197,7 +197,7 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
   // The sum of face normals is c0 + c1 w + c2 w^2 for the weight w. The file stores the normal N = c0, the delta D = c1
   // of the target, and the delta C = c2 of a correction target, all divided by |c0| at each vertex, as a bake would.
-  // The test computes them from three normals of the oracle.
+  // The test computes c0, c1 and c2 from three normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
   extra.positions.assign(mesh.positions.size(), 0);
@@ -311,7 +311,7 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
         std::vector<double> w(2);
         for (std::size_t k = 0; k < 2; ++k) {
           if (a == 0) w[k] = (1 - t) * weights[s][k] + t * weights[s + 1][k];
-          // Weights jump at keys. Only the last sample of the track has the weights of the last key.
+          // In the STEP animation (a = 1), only the last sample of the track has the weights of the last key.
           if (a == 1) w[k] = weights[s == 1 && i == 3 ? 2 : s][k];
           if (a == 2) w[k] = hermite(t, weights[s][k], out[s][k], in[s][k], weights[s + 1][k], td);
         }
@@ -361,7 +361,7 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
         for (std::size_t k = 0; k < kTargets; ++k) {
           const double from = at_key(s, 1, k), to = at_key(s + 1, 1, k);
           if (a == 0) w[k] = (1 - t) * from + t * to;
-          // Weights jump at keys. Only the last sample of the track has the weights of the last key.
+          // In the STEP animation (a = 1), only the last sample of the track has the weights of the last key.
           if (a == 1) w[k] = s + 2 == times.size() && i == 5 ? to : from;
           if (a == 2) w[k] = hermite(t, from, at_key(s, 2, k), at_key(s + 1, 0, k), to, td);
         }
@@ -678,7 +678,8 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
-  // Without this component of its delta, vertex 3 renders a normal parallel to (-1, 0, 1) at weight 1, which is wrong.
+  // If the normal delta of vertex 3 has z = 0, the rendered normal of vertex 3 at weight 1 is parallel to (-1, 0, 1),
+  // which is wrong.
   mesh.targets[0].normals[11] = 0;
   // Requests a weighting, so that the audit need not find the weighting from the stored normals.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
@@ -924,7 +925,7 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
 }
 
 TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
-  // The keyframes of the hinge as a sequence. If the edge is hard, each face has its own normal, and linear
+  // Makes a sequence of the keyframes of the hinge. If the edge is hard, each face has its own normal, and linear
   // interpolation is exact.
   const ShadedMesh mesh = hinge();
   Motion motion;

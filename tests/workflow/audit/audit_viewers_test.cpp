@@ -127,7 +127,8 @@ TEST(AuditViewers, animations_of_every_interpolation_have_the_errors_of_an_oracl
       for (std::size_t s = 0; s + 1 < times.size(); ++s) {
         for (int i = 0; i < 4; ++i) {
           double time = (1 - i / 3.0) * static_cast<double>(times[s]) + i / 3.0 * static_cast<double>(times[s + 1]);
-          // At the end of a segment, the weights just before the jump count, but those of the last key stay.
+          // Weights jump at keys. The last sample of a segment has the weights just before the jump, except at the last
+          // key.
           if (i == 3 && s + 2 < times.size()) time = std::nextafter(static_cast<double>(times[s + 1]), 0);
           std::vector<double> played =
               test::played_by(viewer.viewer.name, c.interpolation, times, c.values, 2, 0.5, 3, time);
@@ -188,8 +189,8 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
 }
 
 TEST(AuditViewers, a_normal_that_a_viewer_cannot_light_is_counted_for_that_viewer) {
-  // By the specification, N + D is (0, 0, 0.003). Viewers that store eight bits per component round this to zero.
-  // Viewers that store directions keep the direction exactly.
+  // By the specification, N + D is (0, 0, 0.003). Viewers that store eight bits per component round this normal to
+  // zero. Viewers that store directions keep the direction exactly.
   ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals.assign(12, 0);
   mesh.targets[0].normals[11] = -1 + 0.003F;

@@ -304,8 +304,8 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-// A bake prefers short deltas of correction targets with large weights. A bake must not write such deltas if viewers
-// that store unit normals would become worse.
+// A bake prefers short deltas of correction targets with large weights. A bake must not write such deltas if errors
+// would then grow in viewers that store unit normals.
 TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     BakeOptions plain;

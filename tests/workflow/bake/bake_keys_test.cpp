@@ -158,8 +158,8 @@ TEST(BakeKeys, no_key_could_be_spared) {
   const double tolerance = 0.5;
   const Keys keys = keys_of(motion, tolerance);
   ShownGlb glb(keys.glb);
-  // Every key must be needed. Without the key, a straight line over both of its intervals would exceed the tolerance at
-  // some normal.
+  // Every key must be needed: without the key, linear interpolation between its two neighbours would exceed the
+  // tolerance at some normal.
   const std::vector<float> times = glb.times;
   ASSERT_GT(times.size(), 3U);
   for (std::size_t k = 1; k + 2 < times.size(); ++k) {

@@ -342,8 +342,8 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 }
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
-  // A roof of two quads with separate vertices at the ridge: vertex 4 is at the position of vertex 3, and vertex 5 at
-  // the position of vertex 2.
+  // Makes a roof of two quads with separate vertices at the ridge: vertex 4 is at the position of vertex 3, and vertex
+  // 5 at the position of vertex 2.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);
@@ -434,7 +434,8 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   expect_exact(glb, smooth_surface(motion));
 }
 
-// Elements shrink or appear only near the end of the motion, which the first segments do not show.
+// Elements shrink or appear only near the end of the motion. A bake that looks only at the first segments would not
+// notice this.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {

@@ -322,7 +322,7 @@ TEST(Bake, base_without_area_is_right_but_near_weight_0) {
   builder.add_node(builder.add_mesh(hills.primitive(builder, {spread})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
-  // If every vertex has its own normal, each vertex is a separate element, and no element has an area in the base.
+  // Every vertex has its own normal, so each vertex is a separate element. In the base, no element has an area.
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
@@ -559,7 +559,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
   }
 }
 
-// Bakes every moving glTF file of the real data. Tests its animations, and each target alone.
+// Bakes every moving glTF file of the real data. Tests the animations of each file, and each target alone.
 TEST(BakeRealData, exact_is_exact_in_every_file) {
   const char* data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";

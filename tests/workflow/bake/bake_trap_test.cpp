@@ -205,7 +205,8 @@ TEST(BakeTraps, steps_stay_steps_with_the_products_of_keys) {
   EXPECT_EQ(sampler_of(result)["interpolation"], "STEP");
   EXPECT_EQ(result.numbers(sampler_of(result)["output"]),
             (std::vector<float>{0, 0, 0, 0, 1, 0.25F, 0.25F, 0.1875F, 0, 1, 0, 0}));
-  // If a target has only the weights 0 and 1, the target needs no correction target for its square.
+  // Target 0 has only the weights 0 and 1, at which w0 (1 - w0) is zero. The bake therefore adds correction targets
+  // only for w0 w1 and w1 (1 - w1).
   test::expect_exact(test::track_error(result));
 }
 

@@ -74,7 +74,7 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
       {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
   for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
     // Between two keys, the bake cuts the curve of a weight into straight pieces. The error decreases with the square
-    // of their number, so this tolerance requires exactly `pieces` pieces.
+    // of the number of pieces, so this tolerance requires exactly `pieces` pieces.
     const auto count = static_cast<double>(pieces);
     Candidate form;
     form.own = {columns[0]};

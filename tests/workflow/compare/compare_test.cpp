@@ -529,8 +529,8 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// A vertex with a single polygon must have the normal of the polygon. The normal of a polygon with more than 32 corners
-// (or samples / 16 corners, if these are more) is computed once for all vertices, and that of a smaller polygon anew
+// A vertex with a single polygon must have the normal of the polygon. If a polygon has more than 32 and more than
+// samples / 16 corners, its normal is computed once for all vertices. The normal of a smaller polygon is computed anew
 // for each vertex.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {

@@ -134,7 +134,7 @@ TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
           const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 has too few digits here
           if (!expected || is_tiny || name->kind == "quaternion:optimal") continue;
           const Vector normal = real(scheme.normals[i]);
-          // Here, the scheme has chosen another branch than the oracle. oracle_test.cpp tests this choice.
+          // Skips samples at which the scheme took another branch than the oracle. oracle_test.cpp tests this choice.
           if (reference::angle(normal, *expected) > 5 * kNear) continue;
           ++held[scheme.scheme];
           EXPECT_NEAR(scheme.angles[i], double(reference::angle(normal, *exact)), 1e-6) << scheme.scheme;

@@ -79,8 +79,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// The average errors of the faces, computed independently. The normals by nlerp between two keyframes, and the cross
-// products of interpolated positions, are compared with the normals of the keyframe that was left out.
+// The average errors of the faces, in radians, computed independently. The normals by nlerp between two keyframes, and
+// the cross products of interpolated positions, are compared with the normals of the keyframe that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

@@ -322,7 +322,7 @@ TEST(QueryVertices, ends_and_cones_of_a_shutter_are_those_of_the_normals_that_it
     const QueryAnswer answer = query_shutter(motion, span, {}, options_of(kind)).value();
     const std::vector<Output> outputs = outputs_of(motion, kind);
     ASSERT_EQ(answer.tables.size(), 2U);
-    // Tests the rows of a table after the first `skipped` rows. The tested rows are the outputs in their order.
+    // Tests the rows of a table after the first `skipped` rows. The tested rows have one row for each output, in order.
     const auto test_rows = [&](const QueryTable& table, std::size_t skipped, double from, double to) {
       const auto mean = numbers(table, "mean"), mean_unit = numbers(table, "mean_unit"), ends = numbers(table, "ends"),
                  off = numbers(table, "ends_off"), half_angle = numbers(table, "half_angle");

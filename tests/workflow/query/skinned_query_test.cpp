@@ -86,7 +86,7 @@ struct Channel {
   }
 };
 
-// A mesh in node 0, and joints below each other: node 1 is the root, and node j + 1 is a child of node j.
+// A mesh in node 0, and a chain of joints: node 1 is the root, and node j + 1 is a child of node j.
 struct Rig {
   std::vector<float> positions, target;
   std::vector<std::uint32_t> corners;
@@ -343,9 +343,9 @@ TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
   }
 }
 
-// Both keys of the rotation are equal, so a joint swings out and back between the keys. Where its path bends most, the
-// edge to the tip bends nearly as much as the bound of the rotation says. A bound that is four times too small would
-// give half as many pieces, and four times the error.
+// Both keys of the rotation are equal, so a joint swings out and back between the keys. Where the path of the tip bends
+// most, it bends nearly as much as the library's bound for the rotation says. A bound that is four times too small
+// would give half as many pieces, and four times the error.
 TEST(SkinnedQuery, a_cubic_rotation_that_swings_between_equal_keys_gets_the_pieces_that_it_needs) {
   constexpr std::uint64_t kSeed = 20261128;
   std::cout << "  from seed " << kSeed << '\n';

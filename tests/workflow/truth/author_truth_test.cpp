@@ -342,8 +342,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
     // In the first five rows of the sheet, both targets only scale the mesh, so they do not change the directions of
-    // the sums. In this case, it makes no difference from which edge azimuths, the directions of offsets around the
-    // normals, are measured.
+    // the sums. In these rows, it makes no difference from which edge the azimuth of an offset (its direction around
+    // the normal) is measured.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -447,7 +447,7 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
 
 // All angles of a rectangle are equal, so the normals of a strip of rectangles follow both the angle weighting and the
 // uniform weighting. On the hills beside the strip, normals follow the author's weighting less exactly than on the
-// strip, and the other weightings give normals within a degree of them.
+// strip, and normals by the other weightings are within a degree of the author's normals.
 TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_near_on_a_part) {
   std::cout << "  from seed " << kSeed + 30 << '\n';
   std::mt19937 random(kSeed + 30);
