@@ -10,8 +10,8 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 
 const run = promisify(execFile);
-// The commands that compile the sources of chronormal and chronormal_io. Each compiles one source, or a generated file
-// that includes several sources.
+// The commands that compile the sources of chronormal and chronormal_io. Each command compiles one source, or a
+// generated file that includes several sources.
 const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(({ command }) =>
   / -o CMakeFiles\/chronormal(_io)?\.dir\//.test(command),
 );

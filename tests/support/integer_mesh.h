@@ -1,4 +1,4 @@
-/// Makes a moving grid from integers and powers of two alone. Its coordinates therefore have the same bits with every
+/// Makes a moving grid from integers and powers of two alone. The coordinates therefore have the same bits with every
 /// compiler and mathematics library. The grid is for tests that compare results with a constant, and for tests that
 /// need large meshes quickly.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_

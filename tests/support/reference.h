@@ -55,7 +55,7 @@ inline constexpr Real kTinyAngle = 1e-9L;
 /// The limit of |q0 . q1| below which rounding decides which arc between the quaternions q0 and q1 is shorter.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// The indices of a face (`element`) and of a segment. They determine the angle by which `quaternion:random` rotates
+/// The indices of a face (`element`) and of a segment, which determine the angle by which `quaternion:random` rotates
 /// the second frame about its normal.
 struct Place {
   std::uint64_t element = 0;
@@ -436,7 +436,7 @@ struct Circle {
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // The plane of the circle has two opposite normals. Either of them will do, since the angles below decide the
+  // The plane of the circle has two opposite normals. The code may use either normal, since the angles below decide the
   // direction of the circle.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
@@ -510,7 +510,7 @@ struct SchemeName {
 /// Returns the unit normal that a scheme must give at t, or nothing if the scheme is not defined there or `name` is
 /// unknown.
 ///
-/// Some schemes find a parameter of their path by a search; is_searched() is true for them. For such a scheme,
+/// A scheme for which is_searched() is true finds a parameter of its path by a search. For such a scheme,
 /// `observed_middle` is the result of the tested scheme at t = 1/2, which determines the parameter, and thereby the
 /// result at every other t. Without `observed_middle`, the function returns nothing for such a scheme.
 /// optimal_circle_error() and scaled_linear_error() test the search itself.

@@ -131,8 +131,8 @@ struct ShadedMesh {
   return mesh;
 }
 
-/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted by up to `tilt` radians from the normals of the
-/// surface. Its targets have random deltas of positions and normals.
+/// Makes a bumpy sheet of n x n vertices, whose base normals are tilted by up to `tilt` radians from the normals of the
+/// surface. The targets have random deltas of positions and normals.
 [[nodiscard]] inline ShadedMesh random_sheet(std::uint64_t seed, std::size_t n, std::size_t target_count, double tilt) {
   fixtures::Random random(seed);
   ShadedMesh mesh;

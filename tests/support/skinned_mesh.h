@@ -155,8 +155,8 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
 }
 
 /// The errors on the screen, in degrees. `shown` is the angle between the rendered and the true normal of a vertex
-/// after both were transformed in the same way. `skinning` is the angle between two normals: that of the surface before
-/// skinning, transformed by the blended matrix, and that of the skinned surface.
+/// after both were transformed in the same way. `skinning` is the angle between the normal of the surface before
+/// skinning, transformed by the blended matrix, and the normal of the skinned surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;
 };

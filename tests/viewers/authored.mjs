@@ -30,8 +30,8 @@ function polygonsOf(n, random) {
 
 const faceNormal = ({ corners }, p) => unit(corners.reduce((sum, v, i) => plus(sum, cross(p[v], p[corners[(i + 1) % corners.length]])), [0, 0, 0]));
 
-// Returns the unit normals of all points. Each is the sum of the normals of the polygons around the point, weighted by
-// the angles at their corners.
+// Returns the unit normals of all points. Each unit normal has the direction of the sum of the normals of the polygons
+// around the point, weighted by the angles at their corners.
 function pointNormals(polygons, p) {
   const sums = p.map(() => [0, 0, 0]);
   for (const polygon of polygons) {

@@ -173,7 +173,7 @@ def leaves(folder, program):
     preferences.use = True
     looked_at(truth.object, "NOW", "BAKED")
     blender_truth.export(os.path.join(folder, "left.glb"), how)
-    # Stands for an export that fails before it writes a file. Such an export leaves a function of the add-on in the
+    # Imitates an export that fails before it writes a file, and therefore leaves a function of the add-on in the
     # exporter.
     part("export").before_export({})
     part("colours").show()

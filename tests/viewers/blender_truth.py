@@ -30,7 +30,8 @@ KEYFRAMES = [0, 12, 24, 36, 48]
 INSTANTS = [0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36, 39, 42, 45, 48]
 
 
-# The deformations. Each function draws its parameters, and returns a function that moves the position of a vertex.
+# The next functions make deformations. Each function draws parameters, and returns a function that moves the position
+# of a vertex.
 
 def bend(draw, _):
     across, along = draw.sample(range(3), 2)
@@ -56,7 +57,7 @@ def dent(draw, places):
     return lambda co: co + way * (size * max(0, 1 - (co - center).length_squared / radius**2) ** 2)
 
 
-# The models. Each function makes an object with a mesh, about two units wide and without keys.
+# The next functions make the models: objects with a mesh that is about two units wide and has no keys.
 
 def edit(mesh, change):
     """Calls change() with a BMesh of a mesh, and writes the changed BMesh back."""

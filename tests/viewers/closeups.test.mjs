@@ -1,6 +1,6 @@
 // Draws close-ups in three viewers, at the place where an exported file has the most torn edges. Each viewer draws the
 // exported file, the baked file, and a still file with Blender's own normals at the same time. Compares the pixels of
-// the baked file with those of the still file. ctest runs this file as `blender` if Blender is installed.
+// the baked file with the pixels of the still file. ctest runs this file as `blender` if Blender is installed.
 //
 //   CHRONORMAL_SEED          another seed for the models; the seed in use is printed
 //   CHRONORMAL_UPDATE_DOCS=1 writes docs/pictures/closeups.jpg

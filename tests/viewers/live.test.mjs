@@ -198,7 +198,7 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // Makes a mesh with five targets. Its metadata have the extras of a glTF file, in the form of the loader of
+  // Makes a mesh with five targets, whose metadata have the extras of a glTF file in the form of the loader of
   // Babylon.js.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);

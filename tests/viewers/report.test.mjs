@@ -1,5 +1,5 @@
-// Tests the page of `chronormal report`. Its numbers must equal those of the program, its right half must show the true
-// normals, and it must make no requests.
+// Tests the page of `chronormal report`. The page must show the same numbers as the program, and the true normals in
+// its right half. The page must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place

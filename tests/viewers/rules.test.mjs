@@ -66,8 +66,8 @@ const boards = {
     free: 90,
   },
   // The first target has a unit normal. The second and the third target have the weights s and -s, and the unit normals
-  // h + D/2 and h - D/2, where h is perpendicular to D. Together they add s D to the normal, for any vector D of length
-  // up to 1.95.
+  // h + D/2 and h - D/2, where h is perpendicular to D. Together, the second and the third target add s D to the
+  // normal, for any vector D of length up to 1.95.
   'a pair of targets for any delta': {
     deltas: (normal, random) => {
       const any = scaled(randomDirection(random), 1.95 * random());

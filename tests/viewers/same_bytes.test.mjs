@@ -20,7 +20,7 @@ const filesOf = (root) =>
     .map((entry) => relative(root, join(entry.parentPath ?? entry.path, entry.name)))
     .sort();
 
-// Runs a command with the native program and with the npm package. Each runs in a separate folder, which has a folder
+// Runs a command with the native program and with the npm package, each in a separate folder that contains a folder
 // `out`.
 function both(args) {
   const [expected, found] = [['native', native], ['wasm', wasm]].map(([name, run]) => {

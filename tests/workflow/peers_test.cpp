@@ -273,8 +273,8 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard reads the first keyframe and the keyframes of its own segments. Keyframe 2 is therefore read
-      // only if a segment of the last shard uses it, which is so for fewer than three peers.
+      // The last shard reads the first keyframe and the keyframes of its own segments. With fewer than three peers, a
+      // segment of the last shard uses keyframe 2.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

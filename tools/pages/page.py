@@ -68,7 +68,7 @@ def looks_alike(path, other):
     """Returns True if two pictures are equal up to rounding."""
     if path.suffix == ".svg":
         number = re.compile(r"-?\d+\.\d+")
-        # Matplotlib makes some names from hashes, which differ from run to run. They are removed here.
+        # Removes names that Matplotlib makes from hashes, since they differ from run to run.
         one, two = (re.sub(r"#?\b[mpCD][0-9a-f]+(?:_\d+)?\b", "", file.read_text()) for file in (path, other))
         if number.sub("", one) != number.sub("", two):
             return False

@@ -94,7 +94,7 @@ def random_order(faces, count):
 
 
 def some(name, pairs):
-    """Returns a part of a morph with random faces. Their number gives about `pairs` pairs of a face and a segment. If
+    """Returns random faces of a morph as a Part: as many faces as give about `pairs` pairs of a face and a segment. If
     the morph has fewer pairs, returns all its faces."""
     motion = cn.read(sample=name)
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)

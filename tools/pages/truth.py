@@ -23,8 +23,8 @@ SCHEMES = [name for name in ROWS if name not in ("catmull-rom", "hermite")]
 
 
 def grid(around, up, place):
-    """Returns a closed tube: positions (n, 3) and faces (m, 3). Its vertices are at place(u, v), where u is the
-    fraction around the tube and v the fraction upwards."""
+    """Returns a closed tube: positions (n, 3) and faces (m, 3). The vertices of the tube are at place(u, v), where u is
+    the fraction around the tube and v the fraction upwards."""
     positions = np.array([place(j / around, i / up) for i in range(up + 1) for j in range(around)])
     i, j = np.divmod(np.arange(up * around), around)
     a, b = i * around + j, i * around + (j + 1) % around

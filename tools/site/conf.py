@@ -48,7 +48,7 @@ GROUPS = {
 
 
 def navigation():
-    """Returns the tables of contents as text. They are hidden at the end of the first page."""
+    """Returns the tables of contents as text. The tables are hidden at the end of the first page."""
     placed = {page for pages in GROUPS.values() for page in pages}
     pages = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md"))]
     groups = GROUPS | {"Results": [page for page in pages if page not in placed]}

@@ -191,7 +191,8 @@ struct Vectors {
   vtkSmartPointer<vtkDataArray> array;
 };
 
-// For each element, which is a point or a cell, the faces whose control normals add up to those of the element.
+// For each element, which is a point or a cell, the faces whose control normals add up to the control normals of the
+// element.
 struct Groups {
   // Collects the faces of each element. for_pairs(body) is called twice, and must call body(element, face) for each
   // face of each element, in the same order both times.

@@ -42,9 +42,9 @@ def between(time, side=SIDE):
 
 
 def on_curve(time, times, side=SIDE, shape=positions):
-    """Returns the positions at a time on the cubics through the steps, in double. The slope at a step is that of the
-    polynomial through the step and its neighbours. At both ends, the slope is that of the polynomial through the
-    nearest four steps."""
+    """Returns the positions at a time on the cubics through the steps, in double. The slope at a step is the slope of
+    the polynomial through the step and its neighbours or, at both ends, of the polynomial through the nearest four
+    steps."""
     def slope(k):
         nearest = slice(0, 4) if k == 0 else slice(max(k - 3, 0), k + 1) if k == len(times) - 1 else slice(k - 1, k + 2)
         steps = np.array([shape(t, side).reshape(-1).astype(float) for t in times[nearest]])

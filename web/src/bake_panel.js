@@ -44,7 +44,7 @@ export function makeBakePanel(input, { plan, bake }) {
     comparison(input), planned);
 }
 
-// Returns a table with the errors of the baked file beside those of the input, and a note on the size of the file.
+// Returns a table with the errors of the baked file beside the errors of the input, and a note on the size of the file.
 function comparison({ came, baked }) {
   if (!baked) return null;
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });

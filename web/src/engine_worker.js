@@ -1,5 +1,5 @@
-// Runs tasks of the program in a worker. The tasks are those of the npm package (js/src). The page sends the compiled
-// module with each task.
+// Runs tasks of the program in a worker. The tasks are the same as in the npm package (js/src). The page sends the
+// compiled module with each task.
 import { serveTasks } from '../../js/src/serve_tasks.js';
 
 serveTasks({

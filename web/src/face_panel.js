@@ -65,7 +65,7 @@ export function makeFacePanel(report, player, view, compute) {
     choose(faceOf(player.part, found.triangle));
   }
 
-  // Shows a face. Its figure comes from the program, or else from the report.
+  // Shows a face. The figure of the face comes from the program, or else from the report.
   function choose(found) {
     if (!found) {
       words.textContent = `There is no such face; the last number is ${(player.part.faces?.at(-1) ?? player.part.triangles.length / 3 - 1).toLocaleString('en')}.`;

@@ -41,8 +41,8 @@ function blendedAt({ positions, targets }, weights, v) {
 }
 
 /**
- * Returns the straight path of a face at the moment that a player shows. In a sequence, the path is that of the current
- * segment. In a glTF file, the path goes from the base to the pose of the moment, or to weight 1 of a target.
+ * Returns the straight path of a face at the moment that a player shows. In a sequence, the path goes through the
+ * current segment. In a glTF file, the path goes from the base to the pose of the moment, or to weight 1 of a target.
  * @returns {{from: number[][], to: number[][], t: number, segment: number, words: string}}
  */
 export function wayOf(player, { corners }) {

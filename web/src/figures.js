@@ -42,7 +42,7 @@ export const inksOf = (isDark) => isDark
   ? { isDark, ink: '#eceae6', quiet: '#a3a099', line: '#43474c', sheet: '#1f2124', start: '#6cb8f5', end: '#ff9566', ball: '#2a2d31' }
   : { isDark, ink: '#1d1c1a', quiet: '#66625c', line: '#d0ccc4', sheet: '#ffffff', start: '#0b67b2', end: '#c2410c', ball: '#f1efec' };
 
-/** Returns a view of a face, as three unit vectors, in which the normals lean away from the viewer and move from left
+/** Returns a view of a face, as three unit vectors, in which the normals lean away from the observer and move from left
  * to right. */
 export function viewOf({ normals, from }) {
   const all = vectors(normals).filter((n) => !isZero(n)), first = all[0] ?? [0, 0, 1], last = all.at(-1) ?? first;

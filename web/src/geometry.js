@@ -1,6 +1,6 @@
-// Computes true normals from positions. They are the cross products of faces, summed over the corners that share a
-// normal (docs/theory.md, sections 1, 8 and 9), with the offsets and polygons of a file's author (docs/formats.md). All
-// arithmetic is in double, and a step allocates no memory.
+// Computes true normals from positions. True normals are the cross products of faces, summed over the corners that
+// share a normal (docs/theory.md, sections 1, 8 and 9), with the offsets and polygons of a file's author
+// (docs/formats.md). All arithmetic is in double, and a step allocates no memory.
 
 /** The number in place of an element for a vertex that has no element: a vertex of a flat primitive, or a vertex
  * without a face. */

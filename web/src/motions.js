@@ -19,8 +19,8 @@ export function placeOf({ at: values }, value) {
   return low + Math.min(Math.max((value - values[low]) / (values[low + 1] - values[low]), 0), 1);
 }
 
-/** Returns the nearest sample before a place (step -1) or after the place (step 1) whose time or weight differs from
- * that of the place. */
+/** Returns the nearest sample before a place (step -1) or after the place (step 1) that has another time or weight than
+ * the place. */
 export function neighbour({ at: values }, at, step) {
   const last = values.length - 1, start = valueAt({ at: values }, at);
   let next = step > 0 ? Math.floor(at) + 1 : Math.ceil(at) - 1;

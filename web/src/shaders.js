@@ -1,4 +1,4 @@
-// Defines shaders that draw a mesh with its rendered or its true normals. They show the mesh lit, the normals as
+// Defines shaders that draw a mesh with its rendered or its true normals. The shaders show the mesh lit, the normals as
 // colours, or the angle between rendered and true normals as colours.
 
 export const LIT = 0, NORMALS = 1, ERROR = 2, PLAIN = 3;

@@ -59,7 +59,7 @@ function half(value) {
 
 // Returns, for each vertex, the smallest rotation from the true normal of the base to the stored normal, as four
 // numbers: its axis, whose length is the sine of the angle, and the cosine of the angle. If the angle is above 90
-// degrees, the axis is that of the rotation to the negated stored normal, and the cosine is negative.
+// degrees, the axis belongs to the rotation to the negated stored normal, and the cosine is negative.
 function turnsOf({ element, normals }, base) {
   const turns = new Float64Array(4 * element.length);
   for (let v = 0; v < element.length; ++v) {
@@ -76,7 +76,7 @@ function turnsOf({ element, normals }, base) {
   return turns;
 }
 
-// Returns a flag for each vertex that tells if its normal is judged. A normal is judged if some target moves the
+// Returns a flag for each vertex that tells whether its normal is judged. A normal is judged if some target moves the
 // surface around the vertex or changes the normal.
 function judgedVertices({ vertices, triangles, element, elements, truth }, moved, shown) {
   const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];

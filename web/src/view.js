@@ -42,7 +42,8 @@ export function makeView(stage, onPoint, onPick) {
   };
   const material = new ShaderMaterial({ uniforms, vertexShader, fragmentShader, side: DoubleSide });
   const plain = new ShaderMaterial({ uniforms: { ...uniforms, mode: { value: PLAIN } }, vertexShader, fragmentShader, side: DoubleSide });
-  // The outline marks the face that a person has picked. It is visible through the parts of the mesh in front of it.
+  // The outline marks the face that a person has picked. The outline is visible through the parts of the mesh in front
+  // of the face.
   const outline = new LineLoop(new BufferGeometry(), new LineBasicMaterial({ color: 0xff8a00, depthTest: false }));
   let outlined = [];
   Object.assign(outline, { frustumCulled: false, renderOrder: 1, visible: false });

@@ -32,8 +32,8 @@ PointRows rows_of(const Motion::Keyframe& keyframe) {
   return rows;
 }
 
-// A sum of terms, together with the sum of their absolute values. settled() replaces a component by 0 if its absolute
-// value is below the rounding error of so many terms.
+// A sum of terms, together with the sum of the absolute values of the terms. settled() replaces a component of the sum
+// by 0 if the component may be only rounding error.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;

@@ -48,8 +48,8 @@ struct Surface {
   std::vector<std::size_t> group;
 };
 
-// Returns the surface of a motion in which all edges are smooth. It has the faces of the motion, and vertices that
-// coincide in all keyframes share a normal.
+// Returns the surface of a motion in which all edges are smooth. The surface has the faces of the motion, and vertices
+// that coincide in all keyframes share a normal.
 Surface smooth_surface(const Motion& motion) {
   Surface surface;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {

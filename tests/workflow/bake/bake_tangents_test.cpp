@@ -19,8 +19,8 @@ using test::Baked;
 using test::ShadedMesh;
 using test::Vector;
 
-// Makes a bumpy sheet with texture coordinates whose u runs along x. Its tangents have length 1 and are perpendicular
-// to the stored normals.
+// Makes a bumpy sheet with texture coordinates whose u runs along x. The tangents of the sheet have length 1 and are
+// perpendicular to the stored normals.
 ShadedMesh sheet(std::uint64_t seed, double tilt) {
   ShadedMesh mesh = test::random_sheet(seed, 6, 2, tilt);
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
@@ -139,12 +139,13 @@ TEST(BakeTangents, count_against_a_limit_of_bytes_and_stay_where_it_has_no_room)
   }
 }
 
-// If the normals are right already, a bake may need to write only tangents.
+// If the normals of a file are right before a bake, the bake may need to write only tangents.
 TEST(BakeTangents, are_written_alone_where_the_normals_are_right) {
   ShadedMesh mesh = test::hinge();
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  // The target turns the square by 90 degrees about y. Its normal deltas are exact at weights 0, 1/2 and 1.
+  // The target turns the square by 90 degrees about y. The normal deltas of the target are exact at weights 0, 1/2 and
+  // 1.
   mesh.targets = {{{0, 0, 0, -1, 0, -1, 0, 0, 0, -1, 0, -1}, {1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1}, {}}};
   BakeOptions options = by_area();
   options.tolerance = 180;

@@ -600,7 +600,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
   EXPECT_GE(files, 9U);
 }
 
-// Choosing a candidate takes a large part of the time of a bake, so the bake must report progress meanwhile.
+// Choosing a candidate takes a large part of the time of a bake, so the bake must report progress during this choice.
 TEST(Bake, progress_goes_forward_while_a_form_is_chosen_and_ends_with_everything_done) {
   GltfBuilder builder = test::hills_document(3);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1, 0.5F, 1, 0, 1});

@@ -353,7 +353,8 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
-// A triangle falls over to one side. Its base normal points to the back, as in files with double-sided materials.
+// A triangle falls over to one side. The base normals point to the back of the triangle, as in files with double-sided
+// materials.
 TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
   for (const float tilt : {0.0F, 1e-3F}) {
     GltfBuilder builder;

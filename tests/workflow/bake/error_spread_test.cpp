@@ -1,4 +1,5 @@
-// Compares the average, the worst error and the quantile that ErrorSpread computes with those of a list of all errors.
+// Compares the average, the worst error and the quantile that ErrorSpread computes with the figures of a list of all
+// errors.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kVertices = 400, kPoses = 50, kBatch = 20;
 
-// Draws kVertices x kPoses errors from 1e-4 to 100 degrees. Some of the errors are unknown.
+// Draws kVertices x kPoses errors from 1e-4 to 100 degrees. About one in nine is -1, which stands for an unknown error.
 std::vector<float> errors_of_all(unsigned seed) {
   fixtures::Random random(seed);
   std::vector<float> errors;

@@ -28,7 +28,7 @@ TEST(MissingNormals, vertices_of_a_point_have_one_element_and_one_stored_normal)
   const NormalTerms terms(shading, truth);
   const std::vector<double> largest(shading.groups.size(), 1.0);
   for (int draw = 0; draw < 40; ++draw) {
-    // Many normals are equal, and many differ in one coordinate. Some have no direction.
+    // Many normals are equal, and many differ in one coordinate. Some normals are zero, so they have no direction.
     std::vector<float> normals(shading.normals.size());
     for (float& c : normals) c = static_cast<float>(random() % 3) - 1;
     const RightNormals rights(shading, terms, normals, largest);

@@ -98,8 +98,8 @@ struct Expected {
   }
 };
 
-// Makes a motion from a set of targets. Its keyframes are the base and, for each target, the positions with this target
-// alone at weight 1.
+// Makes a motion from a set of targets. The keyframes of the motion are the base and, for each target, the positions
+// with this target alone at weight 1.
 Motion star_of(const BlendSet& set) {
   Motion motion;
   motion.topology = set.topology;

@@ -139,8 +139,8 @@ bool is_sliver(const Motion& motion, std::size_t keyframe, std::size_t face) {
 }
 
 TEST(Inspect, slivers_are_those_of_their_own_keyframe_and_the_box_is_that_of_all) {
-  // The needles are about as wide as the bound for slivers. Their distance from the origin depends on keyframe and
-  // face.
+  // The needles are about as wide as the bound for slivers. The distance of a needle from the origin depends on the
+  // keyframe and the face.
   constexpr std::size_t kFaces = 10000;
   Motion motion = fixtures::soup({.face_count = kFaces, .seed = 77, .motion = 1e-3, .needle = 4e-7});
   motion.keyframes.push_back(motion.keyframes[0]);

@@ -105,7 +105,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard);
 }
 
-// Replaces `from` by `to` in the text of a part, and replaces the checksum by that of the new text.
+// Replaces `from` by `to` in the text of a part, and replaces the checksum by the checksum of the new text.
 std::string edited(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;

@@ -27,7 +27,7 @@ using test::WholeVector;
 constexpr std::uint64_t kSeed = 20261127;
 constexpr std::uint32_t kSide = 4;  // number of vertices along a side
 
-// Makes a sheet of quads and triangles with three keyframes. Its coordinates are small integers, so all exact
+// Makes a sheet of quads and triangles with three keyframes. The coordinates are small integers, so all exact
 // coincidences occur: normals of faces that cancel, normals that are seen edge-on at a keyframe, and vertices at the
 // eye. Two vertices coincide.
 Motion small_sheet(fixtures::Random& random, int reach) {

@@ -1,4 +1,4 @@
-// Compares the results for a mesh near the origin with those for the same mesh far away. Far away, float32 cannot
+// Compares the results for a mesh near the origin with the results for the same mesh far away. Far away, float32 cannot
 // represent the coordinates, so keyframes also store the rounding errors (residuals). All results must be equal.
 #include <gtest/gtest.h>
 
@@ -167,8 +167,8 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // Rounds the position of the eye to multiples of kUnit. The position is then exact in double, also beside the mesh
-    // far away.
+    // Rounds the position of the eye to multiples of kUnit. The position is then exact in double, even near the mesh
+    // that is far from the origin.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;

@@ -322,7 +322,7 @@ TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
   const auto slope = static_cast<float>(4 * tolerance * wanted * wanted);
   moved.channels = {
       {2, "translation", "CUBICSPLINE", {0, 1}, {0, 0, 0, 0, 0, 0, 0, 0, slope, 0, 0, -slope, 0, 0, 0, 0, 0, 0}}};
-  // The tip turns around joint 1, at a distance of 0.1 from the axis, beside a corner at a distance of 1.
+  // The tip turns around joint 1, at a distance of 0.1 from the axis. The other two corners rest at a distance of 1.
   Rig turned = lever(1, {0, 0, 0.1F});
   turned.positions[1] = turned.positions[4] = -1;
   const double angle = wanted * std::sqrt(8 * tolerance / 0.1);

@@ -90,8 +90,8 @@ test::GltfBuilder talking(const test::ShadedMesh& mesh) {
 
 test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) { return talking(test::random_sheet(seed, 9, 3, tilt)); }
 
-// Makes an OBJ file of a box. Its six sides are quads with separate normals, so each point has three vertices. The
-// upper side turns, and one of its corners rises, so all vertices move differently.
+// Makes an OBJ file of a box. The six sides of the box are quads with separate normals, so each point has three
+// vertices. The upper side turns, and one of its corners rises, so all vertices move differently.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {

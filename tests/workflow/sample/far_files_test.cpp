@@ -58,7 +58,7 @@ exact::Vector normal_of(const std::vector<Corners>& triangles, const std::vector
 }
 
 // Draws a triangle whose coordinates are multiples of `step`. The triangle has a size of at most 2^19 steps, at a
-// distance of at most 2^52 steps from the origin, so doubles hold its coordinates.
+// distance of at most 2^52 steps from the origin, so doubles represent its coordinates.
 Corners triangle(fixtures::Random& random, double step) {
   const double far = random.below(3) == 0 ? 0 : std::ldexp(1.0, static_cast<int>(random.below(53)));
   const double size = std::ldexp(1.0, static_cast<int>(random.below(19)));

@@ -168,7 +168,8 @@ TEST(GltfShading, a_vertex_that_a_crease_would_split_stays_whole_and_is_counted)
 }
 
 TEST(GltfShading, parts_on_both_sides_of_such_a_vertex_are_joined_where_copies_show_them) {
-  // A third triangle continues the second triangle in its plane. Its vertices 4 and 5 are copies of vertices 2 and 3.
+  // A third triangle continues the second triangle in its plane. Vertices 4 and 5 of the third triangle are copies of
+  // vertices 2 and 3.
   ShadedMesh mesh = hinge();
   mesh.normals.clear();
   mesh.positions[11] = 2;
@@ -236,8 +237,8 @@ GltfBuilder marked(const Json& mark) {
   return builder;
 }
 
-// Returns the mark that a bake leaves in the extras, in version 1. It means the same as good_mark(), which has version
-// 2.
+// Returns the mark that a bake leaves in the extras, in version 1. The mark means the same as good_mark(), which has
+// version 2.
 Json mark_of_factors() {
   return {{"version", 1},
           {"encode", "exact"},

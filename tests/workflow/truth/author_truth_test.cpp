@@ -71,7 +71,7 @@ struct Authored {
     for (Vector& sum : result) sum = reference::normalised(sum);
     return result;
   }
-  // Stores normals in the file: those of the base, and the normals of each target as deltas.
+  // Stores normals in the file: the normals of the base, and the normals of each target as deltas.
   void store(const std::vector<Vector>& base, const std::vector<std::vector<Vector>>& keys) {
     file.normals.clear();
     for (const Vector& n : base)
@@ -89,7 +89,7 @@ struct Authored {
   }
 };
 
-// Makes a hilly sheet of quads. Its targets move every vertex.
+// Makes a hilly sheet of quads, whose targets move every vertex.
 Authored quads(std::mt19937& random, std::size_t side = 9) {
   Authored mesh;
   std::uniform_real_distribution<float> hill(-0.35F, 0.35F);
