@@ -102,8 +102,9 @@ def models(folder, program, seed):
 
 
 def jumps(o):
-    """Makes the panel jump to the first pair of keys in its list. Returns the error that the list states, the largest
-    error after the jump, both in degrees, and the number of keys at weight 1. Returns None if no pair is listed."""
+    """Makes the panel jump to the first pair of shape keys in its list. Returns the error that the list states, the
+    largest error after the jump, both in degrees, and the number of shape keys at weight 1. Returns None if no pair is
+    listed."""
     state = bpy.context.window_manager.chronormal
     if looked_at(o, "KEYS", "PLAIN")["findings"] == []:
         return None

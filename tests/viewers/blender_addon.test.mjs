@@ -18,8 +18,8 @@ import { read, shownNormals } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
-// The largest permitted errors in degrees, as in blender_truth.test.mjs: AT_KEYS is for the base and the keys, MEAN
-// (average) and WORST are for times of the animation.
+// The largest permitted errors in degrees, as in blender_truth.test.mjs: AT_KEYS is for the base and the shape keys,
+// MEAN (average) and WORST are for times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
@@ -112,8 +112,8 @@ describe('The add-on', () => {
         assert.ok(times.mean <= MEAN && times.worst <= WORST, `${form}: ${times.mean} / ${times.worst} degrees`);
       }
       own.diagnostic(said);
-      // The operator of the add-on warns if the error halfway to a key exceeds the tolerance. No file can avoid this
-      // error unless a program sets the weights of the correction targets.
+      // The operator of the add-on warns if the error halfway to a shape key exceeds the tolerance. No file can avoid
+      // this error unless a program sets the weights of the correction targets.
       assert.equal(level, said.includes('could not bring') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');

@@ -31,8 +31,8 @@ const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
 // Returns, for each vertex of an exported primitive, the loop (corner of a polygon) of Blender's mesh from which the
-// vertex was made. This loop has the position of the vertex, in the base and at each key. If several loops have this
-// position, takes the one with the nearest normals.
+// vertex was made. This loop has the position of the vertex, in the base and at each shape key. If several loops have
+// this position, takes the one with the nearest normals.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];
@@ -64,14 +64,14 @@ export async function readModel(path) {
 }
 
 // Compares the normals of a file that was baked from a model with Blender's normals. Returns the errors in degrees:
-// {stills, times}, each {mean, worst}. The stills are the base and the keys.
+// {stills, times}, each {mean, worst}. The stills are the base and the shape keys.
 export function errors(file, { truth, exported, loops }) {
   const result = { stills: { sum: 0, count: 0, worst: 0 }, times: { sum: 0, count: 0, worst: 0 } };
   file.meshes[0].primitives.forEach((primitive, p) => {
     assert.deepEqual(primitive.positions, exported.meshes[0].primitives[p].positions);
     truth.instants.forEach(({ time, weights }, i) => {
       const still = time === undefined;
-      // In the base and at a single key, the weights of correction targets are 0.
+      // In the base and at a single shape key, the weights of correction targets are 0.
       const alone = file.meshes[0].weights.map((_, k) => weights[k] ?? 0);
       const normals = shownNormals(primitive, still ? alone : nodeWeights(file, 0, file.animations[0], time));
       const kind = still ? result.stills : result.times;

@@ -57,7 +57,7 @@ def dent(draw, places):
     return lambda co: co + way * (size * max(0, 1 - (co - center).length_squared / radius**2) ** 2)
 
 
-# The next functions make the models: objects with a mesh that is about two units wide and has no keys.
+# The next functions make the models: objects with a mesh that is about two units wide and has no shape keys.
 
 def edit(mesh, change):
     """Calls change() with a BMesh of a mesh, and writes the changed BMesh back."""
@@ -221,7 +221,7 @@ def materials(draw):
 
 
 def facets(_):
-    """Makes a flat-shaded cube with planar sides. Edges inside a side become hard only in keys."""
+    """Makes a flat-shaded cube with planar sides. Edges inside a side become hard only in shape keys."""
     bpy.ops.mesh.primitive_cube_add(size=1.6)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 2))
@@ -244,8 +244,8 @@ def triangles(draw):
 
 
 def sheet(draw):
-    """Makes a planar grid of quads. In the base, all weightings give the same normals; in the keys, they give different
-    normals."""
+    """Makes a planar grid of quads. In the base, all weightings give the same normals; in the shape keys, they give
+    different normals."""
     return grid(draw, 0)
 
 
@@ -266,8 +266,8 @@ def authored(draw):
     return o
 
 
-# The models: the name, the function that makes the model, the functions that deform its keys, and the interpolation of
-# its animation.
+# The models: the name, the function that makes the model, the functions that deform its shape keys, and the
+# interpolation of its animation.
 LINEAR, CUBIC, SAMPLED = "LINEAR", "BEZIER", "every frame"
 MODELS = {
     "head": (head, (bend, bulge), LINEAR),

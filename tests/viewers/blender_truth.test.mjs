@@ -14,8 +14,8 @@ import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
-// The largest permitted errors in degrees. AT_KEYS is for the base and for each key alone. MEAN, for the average error,
-// and WORST are for times of the animation.
+// The largest permitted errors in degrees. AT_KEYS is for the base and for each shape key alone. MEAN, for the average
+// error, and WORST are for times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;

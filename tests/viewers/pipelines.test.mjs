@@ -90,9 +90,9 @@ async function assertKept(context, name, lines) {
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    // A vertex that keeps the author's delta keeps the error of the exported file. A bake may add keys, and audit takes
-    // the same number of samples between any two keys. The exported file has fewer keys, so it is sampled more often to
-    // find the same errors.
+    // A vertex that keeps the author's delta keeps the error of the exported file. A bake may add keys to a track, and
+    // audit takes the same number of samples between any two keys. The exported file has fewer keys, so it is sampled
+    // more often to find the same errors.
     const exported = await measure(line, name, 'exported');
     let worst = Math.max(plain.worst, exported.worst);
     if (kept.worst > worst + allowed) worst = Math.max(worst, audited(exported.path, '--samples', '81').worst);

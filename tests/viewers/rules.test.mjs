@@ -84,9 +84,9 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, and `weights` has the weights at
-// TIMES. `patches` has only squares whose normal is longer than 0.4 by every rule at each of the TIMES, since rounding
-// turns a shorter normal by a larger angle.
+// Returns {rows, weights, patches}. `rows` has the weights at the four keys of the track, and `weights` has the weights
+// at TIMES. `patches` has only squares whose normal is longer than 0.4 by every rule at each of the TIMES, since
+// rounding turns a shorter normal by a larger angle.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));
@@ -201,8 +201,8 @@ describe('a real viewer', () => {
         if (viewer === 'filament') {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
-          // PlayCanvas makes separate tracks of the tangents of each key, and then looks for tangents in each of these
-          // tracks. After the first key, PlayCanvas finds no tangents, so the target no longer moves.
+          // PlayCanvas makes separate tracks of the tangents of each key of a spline, and then looks for tangents in
+          // each of these tracks. After the first key, PlayCanvas finds no tangents, so the target no longer moves.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }

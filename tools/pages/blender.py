@@ -34,7 +34,7 @@ def puff(co):
 
 
 def make_head():
-    """Makes a head with two keys and an animation, in an otherwise empty scene."""
+    """Makes a head with two shape keys and an animation, in an otherwise empty scene."""
     for o in list(bpy.data.objects):
         bpy.data.objects.remove(o)
     scene = bpy.context.scene

@@ -62,7 +62,7 @@ export function makePlayer(report, onChange) {
     onChange('motion');
     step();
   };
-  /** Goes to a place in report.worst and returns its vertex. */
+  /** Goes to one of the worst places of the report, and returns its vertex. */
   player.visit = ({ part, motion, sample, vertex }) => {
     player.pause();
     if (player.viewer !== 'specification') player.chooseViewer('specification');

@@ -324,15 +324,15 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
   }
 }
 
-// If many targets are active, the audit interpolates positions between the positions at two keys instead of adding up
-// the targets.
+// If many targets are active, the audit interpolates positions between the positions at two keys of the track instead
+// of adding up the targets.
 TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
   constexpr std::size_t kTargets = 12;
   const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
   fixtures::Random random(21);
   const std::vector<float> times = {0, 1, 1.5F, 4};
-  // Each key has in-tangents, weights and out-tangents. At one key, few targets are active, so the audit does not
-  // interpolate there.
+  // Each key of the track has in-tangents, weights and out-tangents. At one key, few targets are active, so the audit
+  // does not interpolate there.
   std::vector<float> cubic, weights;
   for (std::size_t key = 0; key < times.size(); ++key) {
     for (std::size_t row = 0; row < 3; ++row) {
@@ -810,7 +810,7 @@ TEST(Audit, one_animation_can_be_asked_for) {
 
 TEST(Audit, other_rules_join_the_normals_of_the_keys) {
   // The mesh is a single triangle, in which vertex 2 moves from y to z, so n(t) = (0, -t, 1 - t). The stored normals at
-  // the keys are (0, 0, 1) and (0, -3, 0).
+  // the weights 0 and 1 are (0, 0, 1) and (0, -3, 0).
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};

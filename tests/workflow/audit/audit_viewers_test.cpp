@@ -127,8 +127,8 @@ TEST(AuditViewers, animations_of_every_interpolation_have_the_errors_of_an_oracl
       for (std::size_t s = 0; s + 1 < times.size(); ++s) {
         for (int i = 0; i < 4; ++i) {
           double time = (1 - i / 3.0) * static_cast<double>(times[s]) + i / 3.0 * static_cast<double>(times[s + 1]);
-          // Weights jump at keys. The last sample of a segment has the weights just before the jump, except at the last
-          // key.
+          // Weights may jump at keys. The last sample of a segment has the weights just before the jump, except at the
+          // last key.
           if (i == 3 && s + 2 < times.size()) time = std::nextafter(static_cast<double>(times[s + 1]), 0);
           std::vector<double> played =
               test::played_by(viewer.viewer.name, c.interpolation, times, c.values, 2, 0.5, 3, time);

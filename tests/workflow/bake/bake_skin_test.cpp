@@ -201,7 +201,7 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
     ASSERT_TRUE(baked.ok()) << baked.error;
     const BakedCandidate& before = baked.report.meshes[0].candidates.front();
     ASSERT_EQ(before.name, "as it is");
-    // The judged poses are the three keys and the pose of the mesh's own weights, which are zero.
+    // The judged poses are the three keys of the track and the pose of the mesh's own weights, which are zero.
     double mean = 0, worst = 0;
     for (const Viewer& viewer : viewers) {
       const Carry rule = viewer == kThree ? Carry::kBlended : Carry::kInverseTranspose;

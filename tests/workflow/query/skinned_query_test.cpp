@@ -197,7 +197,7 @@ std::vector<Vector> places_in(const Segment& segment, Real t) {
   return result;
 }
 
-// Calls body(segment, t, time, true places) for moments inside of all segments.
+// Calls body(segment, t, time, true positions) at five moments inside each segment.
 template <class Body>
 void each_moment(const Rig& rig, const Motion& motion, const Body& body) {
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {

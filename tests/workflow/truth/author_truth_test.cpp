@@ -327,8 +327,8 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
   }
 }
 
-// Returns the offset of a stored normal from a normal sum, both of length 1. The offset is perpendicular to the sum,
-// and its length is the angle in radians.
+// Returns the offset of a stored normal from a sum of face normals, both of length 1. The offset is perpendicular to
+// the sum, and its length is the angle in radians.
 Vector added_to(const Vector& sum, const Vector& stored) {
   using namespace reference;
   const Vector across = normalised(add(stored, scaled(-dot(sum, stored), sum)));
@@ -458,7 +458,7 @@ TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_n
     for (std::size_t i = 2; i < mesh.file.positions.size(); i += 3) mesh.file.positions[i] *= 0.1F;
     for (auto& target : mesh.file.targets)
       for (float& delta : target.positions) delta *= 0.1F;
-    // The strip is bent across its length, differently in the base and in each key.
+    // The strip is bent across its length, differently in the base and in each target.
     constexpr std::size_t kColumns = 9, kRows = 9;
     std::array<std::vector<std::array<double, 2>>, 3> outlines;
     for (auto& outline : outlines) {
