@@ -13,8 +13,8 @@
 /// Compared   normals that a target with nonzero weight changes: by moving a face around it, or by a delta in the file.
 ///            Each different normal counts once; in a glTF file, once for each vertex.
 /// glTF       each mesh separately, with elements by its stored normals. If an author edited base normals, the true
-///            normals are turned in the same way, as in an audit (workflow/gltf_shading.h). Flat primitives have no
-///            errors in viewers and are left out. Correction targets get their weights by formulas.
+///            normals are turned in the same way, as in an audit (workflow/shading/gltf_shading.h). Flat primitives
+///            have no errors in viewers and are left out. Correction targets get their weights by formulas.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_H_
 
