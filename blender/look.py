@@ -21,7 +21,8 @@ from . import baked, colours, program, settings, shown, truth
 # The largest numbers of frames and of pairs of keys that are checked.
 MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
-# The smallest distance between two places in the panel's list, as a share of the object's size.
+# The smallest distance between two vertices in the panel's list, as a share of the object's size. Two listed frames are
+# at least this share of all frames apart.
 APART = 0.1
 # Poses and places whose error is below this number of degrees are not in the panel's list.
 VISIBLE = 0.1
@@ -103,8 +104,8 @@ def _baked(path: Path) -> Path:
 
 
 def frames_of(scene: bpy.types.Scene) -> list[int]:
-    """Returns the frames of the timeline and the current frame. If the timeline has more than MOST_FRAMES frames, only
-    every second, third or so of its frames is returned, and also the last frame and the current one."""
+    """Returns the frames of the timeline and the current frame. If the timeline has more than MOST_FRAMES frames,
+    returns only frames at equal steps, the last frame and the current frame."""
     step = max(1, -(-(scene.frame_end - scene.frame_start + 1) // MOST_FRAMES))
     frames = set(range(scene.frame_start, scene.frame_end + 1, step)) | {scene.frame_end, scene.frame_current}
     return sorted(frames)
@@ -184,7 +185,7 @@ def _keep(_state: "State", _colour: object) -> None:
 
 
 class State(bpy.types.PropertyGroup):
-    """The content of the panel. It belongs to the window manager, so it is never written into a file."""
+    """The content of the panel, which belongs to the window manager and is never written into a file."""
 
     judged: bpy.props.EnumProperty(
         name="File",

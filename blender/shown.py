@@ -107,7 +107,7 @@ class Shown:
         """Returns the weights of all targets if the author's keys have the weights `own`.
 
         The weights of correction targets come from the animation of the file if `time` is given, in seconds. Otherwise
-        they come from the formulas in the mark.
+        they come from the formulas in `mark`.
         """
         result = numpy.zeros(len(self.normal_deltas))
         if time is not None and self.track is not None:

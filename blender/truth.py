@@ -183,6 +183,6 @@ def _as_gltf(vectors: numpy.ndarray) -> numpy.ndarray:
 
 def _rows(table: numpy.ndarray) -> numpy.ndarray:
     """Returns one value for each row of a table of floats. Two values are equal if and only if their rows are equal.
-    The values are bytes, so 0 is added to turn -0 into 0."""
+    The rows are compared as bytes, so 0 is added to turn -0 into 0."""
     table = numpy.ascontiguousarray(table + numpy.float32(0))
     return table.view(numpy.dtype((numpy.void, table.dtype.itemsize * table.shape[1]))).ravel()

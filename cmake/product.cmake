@@ -1,10 +1,9 @@
-# Adds the targets of the product: libraries and the program. The function chronormal_add_product() defines them. They
-# are built once for users and, if tests are built, once more with sanitizers for the tests.
+# Adds the targets of the product: libraries and the program. The function chronormal_add_product() defines these
+# targets. The targets are built once for users and, if tests are built, once more with sanitizers for the tests.
 #
-#   chronormal       core, simd, motion, normals, schemes, analysis
-#   chronormal_io    io and workflow                                      (CHRONORMAL_IO)
-#   chronormal_c     a shared library with the functions of chronormal_c.h for C   (CHRONORMAL_C)
-#   chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
+# chronormal       core, simd, motion, normals, schemes, analysis chronormal_io    io and workflow
+# (CHRONORMAL_IO) chronormal_c     a shared library with the functions of chronormal_c.h for C   (CHRONORMAL_C)
+# chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
 if(EMSCRIPTEN)
   include(cmake/wasm.cmake)
 elseif(CHRONORMAL_STATIC)
@@ -130,8 +129,8 @@ function(chronormal_add_product suffix flags)
       chronormal${suffix}
       PRIVATE CHRONORMAL_HIGHWAY "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-      # Highway enables these instructions by a pragma, but GCC 12 ignores the pragma in constructors that the compiler
-      # generates.
+      # Highway enables the crypto instructions by a pragma, but GCC 12 ignores the pragma in constructors that the
+      # compiler generates.
       target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
     endif()
   endif()

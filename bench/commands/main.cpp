@@ -1,9 +1,10 @@
 // Measures how long commands of the program take on one large sequence: chronormal_bench_commands (./run bench
 // --commands). For comparison it measures lower bounds: reading the bytes of the files (cat), copying them in memory
 // (memcpy), reading the files as a motion, and copying the output to the disk for a command that writes a large file.
-// It also measures how long one frame of OBJ takes to read: by our reader, by a loop that finds its numbers with
-// std::from_chars, and by other libraries if they are installed. All of them must find the same positions before they
-// are timed. With --json FILE it also writes the results to a file, from which docs/benchmarks.md is made.
+// It also measures how long one frame of OBJ takes to read: by our reader, by a loop that parses numbers with
+// std::from_chars, and by other libraries if they are installed. All readers except Assimp, which returns corners, must
+// find the same positions. With --json FILE it also writes the results to a file, from which docs/benchmarks.md is
+// made.
 
 #include <fcntl.h>
 #include <fmt/core.h>

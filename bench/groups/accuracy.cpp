@@ -1,5 +1,5 @@
-// Measures the errors of all paths (ways to compute normals) against normals in double: on a grid, on the same grid far
-// from the origin, and on the built-in morphs.
+// Measures the errors of all paths (ways to compute normals) against normals that are computed in double: on a grid, on
+// the same grid far from the origin, and on the built-in morphs.
 
 #include <fmt/core.h>
 

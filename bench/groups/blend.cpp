@@ -37,7 +37,8 @@ BlendSet make_sparse(const Mesh& mesh) {
   std::mt19937_64 random(1);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
   for (std::size_t k = 0; k < kTargets; ++k) {
-    // Half of the targets surround the same few places, so that they overlap like the targets of a human face.
+    // Half of the targets have the same five vertices as centres, so that they overlap like the targets of a human
+    // face.
     const std::size_t centre = k % 2 == 0 ? random() % vertices : (k % 10) * vertices / 40;
     const Vector push = {uniform() - 0.5, uniform() - 0.5, uniform() - 0.5};
     std::vector<std::pair<double, std::uint32_t>> near;

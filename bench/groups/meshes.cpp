@@ -25,7 +25,7 @@ constexpr std::size_t kFaces = 45000;
 // nearly cancel. The limit reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
-// Returns the torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
+// Returns the torus, stretched along one axis so that half of its triangles have an aspect ratio of at least 10.
 Mesh thin() {
   const Mesh torus(Elements::kFaces, kFaces, false);
   std::vector<float> from(torus.from().begin(), torus.from().end()), to(torus.to().begin(), torus.to().end());

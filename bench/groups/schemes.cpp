@@ -28,7 +28,7 @@ Vector unit_of(const Vector& n) {
   return {n[0] / size, n[1] / size, n[2] / size};
 }
 
-// Evaluates the polynomial through the unit normals at `nodes` + 1 equal steps of t, by Neville's recursion.
+// Evaluates the polynomial through the unit normals at `nodes` + 1 equally spaced values of t, by Neville's recursion.
 std::vector<Vector> through_nodes(const Oracle& oracle, std::size_t nodes, double t) {
   std::vector<std::vector<Vector>> at(nodes + 1);
   for (std::size_t i = 0; i <= nodes; ++i) {

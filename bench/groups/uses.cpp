@@ -1,6 +1,6 @@
-// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side a
-// viewer sees them. For comparison, also times the evaluation of the same control normals at one t, and the methods by
-// which other programs answer such a question.
+// Times queries about a whole segment that are answered from control normals in memory: when faces collapse, and from
+// which side a viewer sees them. For comparison, also times the evaluation of the same control normals at one t, and
+// the methods by which other programs answer such queries.
 
 #include <fmt/core.h>
 
@@ -52,8 +52,8 @@ ShutterSide side_by_samples(const Question& q, std::size_t face, const View& vie
   return is_back ? ShutterSide::kBoth : ShutterSide::kFront;
 }
 
-// Decides by a published method if a face can be culled (Munkberg and Akenine-Moller): it can if no Bernstein
-// coefficient of the cubic is positive. The coefficients come from control normals and ignore rounding, as published.
+// Decides by the test of Munkberg and Akenine-Moller: a face can be culled if no Bernstein coefficient of the dot
+// product of n(t) and the vector to the viewer, a cubic in t, is positive. Ignores rounding, as published.
 ShutterSide side_by_coefficients(const Question& q, std::size_t face, const View& view) {
   const ControlNormals& c = q.normals[face];
   const Vec3d from = way_at(q.segment, face, view, 0), to = way_at(q.segment, face, view, 1);

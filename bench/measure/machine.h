@@ -11,8 +11,8 @@ namespace chronormal::bench {
 /// Returns names and values in the order in which tables show them: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// Returns in words the prefetch distances (PrefetchRule), which say how far ahead of the evaluation the curves are
-/// prefetched. They are the distances that this run has measured to be the fastest for each size of data.
+/// Describes how far ahead of the evaluation the curves are prefetched (PrefetchRule): for each size of data, the
+/// distance in KiB that this run has measured to be the fastest.
 [[nodiscard]] std::string chosen_prefetch();
 
 /// Restarts the program with a tunable of the C library, so that every large allocation of this process uses huge

@@ -63,7 +63,7 @@ class Oracle {
   std::vector<std::uint32_t> elements_;
   // The faces whose normals are added up for each vertex, as pairs of an index into elements_ and a face.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;
-  // The sum of the areas of the faces of each element, at both ends of the segment.
+  // For each element, the sum of |n| over the faces of the element and over both ends of the segment.
   std::vector<double> areas_;
 };
 

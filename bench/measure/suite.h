@@ -1,6 +1,5 @@
 /// Runs groups of cases, which are functions to be timed. A suite compares the result of each case with the oracle,
-/// then times all cases in random order, together with the speed of memory, and makes a row of the table from each
-/// case.
+/// then times all cases in random order, together with the speed of memory, and makes a row of the table for each case.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -124,7 +123,7 @@ class CaseList {
   std::vector<Case> cases_;
 };
 
-/// The time t of every verification. It is not a short binary fraction, so products with it must be rounded.
+/// The time t of every verification. Products with t must be rounded, since t is not a short binary fraction.
 inline constexpr float kTime = 0.3f;
 
 }  // namespace chronormal::bench

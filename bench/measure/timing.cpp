@@ -10,10 +10,10 @@
 namespace chronormal::bench {
 namespace {
 
-// Before a function is timed, it is called to fill the caches. If a call takes at most kShort seconds, it is called
-// kWarmCalls times, because data that barely exceed a cache reach a steady state only after several passes. If a call
-// takes at most kSlow seconds, it is called once, and a slower function is not called. If a call takes more than
-// kVerySlow seconds, the first rough timing counts as a result, and only one more call follows.
+// A function is called to fill the caches before it is timed: kWarmCalls times if a call takes at most kShort seconds,
+// because data that barely exceed a cache reach a steady state only after several passes; once if a call takes at most
+// kSlow seconds; otherwise not at all. If a call takes more than kVerySlow seconds, the first rough timing counts as a
+// result, and only one more call follows.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 

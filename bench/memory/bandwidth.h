@@ -1,6 +1,6 @@
 /// Measures how fast this machine reads memory and streams through it, at the working set of a benchmark.
 ///
-/// Both figures are the best of several methods, on one thread, with the widest vectors that the machine has:
+/// Each figure is the best of several methods, on one thread, with the widest vectors that the machine has:
 ///
 ///     read     all bytes are added up; with software prefetch and without
 ///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with stores past

@@ -1,5 +1,5 @@
 /// Measures a loop that reads and writes as many bytes as an evaluation, in the same order, but computes almost
-/// nothing. Its time is the time that would remain if all arithmetic were free.
+/// nothing. The time of the loop is the time that would remain if all arithmetic were free.
 #ifndef BENCH_MEMORY_BARE_LOOP_H_
 #define BENCH_MEMORY_BARE_LOOP_H_
 

@@ -39,7 +39,8 @@ Case loop_case(const std::shared_ptr<LoopMemory>& memory, Loop loop, double limi
 
 #ifdef CHRONORMAL_HAVE_PEERS
 
-// The limit for the error of CGAL in radians. It is large because CGAL does not define its vertex normal as a sum.
+// The limit for the error of CGAL in radians. The limit is large because CGAL does not define the normal of a vertex as
+// a sum.
 constexpr double kOtherRule = 0.3;
 
 constexpr std::size_t kManyElements = 5000000;

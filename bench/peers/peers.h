@@ -19,8 +19,8 @@
 
 namespace chronormal::peers {
 
-/// A mesh that all libraries can read. It must be a manifold with consistently wound faces, since some libraries accept
-/// no other mesh.
+/// A mesh that all libraries can read: a manifold with consistently wound faces, since some libraries accept no other
+/// mesh.
 struct TriangleMesh {
   std::span<const float> positions;        ///< (V, 3)
   std::span<const std::uint32_t> corners;  ///< (F, 3)

@@ -42,8 +42,8 @@ struct AuditArguments {
   bool json = false;
 };
 
-// The message if the user sets a limit (--tolerance or --tears) but nothing in the input moves. Such an input must not
-// pass, because an export may have lost its animations.
+// The message for the case that the user sets a limit (--tolerance or --tears) but nothing in the input moves. Such an
+// input must not pass, because an export may have lost its animations.
 constexpr const char* kNothingMoves =
     "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 

@@ -26,8 +26,8 @@ namespace chronormal::cli {
 namespace {
 
 // The largest file, in bytes, that is audited after a bake: the input if it is a glTF file, otherwise the result. An
-// audit judges every target. For a larger file, the user would wait too long for the one line that it adds to the
-// report.
+// audit judges every target, so for a larger file the user would wait too long for the one line that the audit adds to
+// the report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
 struct BakeArguments {
@@ -171,7 +171,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   audited.weighting = how.weighting;
   constexpr std::size_t kEnoughSegments = 120;
   audited.most_segments = kEnoughSegments;
-  // Only a glTF file has poses of its own, and looks different from viewer to viewer.
+  // The audit takes viewers and poses only for a glTF file, not for a motion.
   if (author != nullptr) {
     audited.viewers = how.viewers;
     audited.viewers.insert(audited.viewers.end(), how.spared.begin(), how.spared.end());
@@ -332,8 +332,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt, input.notes()};
-  // An audit judges the triangles of the written file. Their normals differ from the normals of larger polygons, so a
-  // mesh with such polygons is not audited.
+  // An audit judges the triangles of the written file. The normals of these triangles differ from the normals of larger
+  // polygons, so a mesh with such polygons is not audited.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
     auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked, KnownAuthors&) -> Result<Audit> {

@@ -20,8 +20,8 @@ struct BlendArguments {
 };
 
 /// Reads the input, and compares the normals of blended targets with exact normals. For a glTF file, compares the
-/// stored normals and deltas, unless the user chooses elements, whose normals are then computed from the geometry.
-/// Errors: kUsage for options that exclude each other; those of reading and of compare_blends().
+/// stored normals and deltas. If the user chooses elements, computes their normals from the geometry instead. Errors:
+/// kUsage for options that exclude each other; those of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

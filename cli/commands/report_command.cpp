@@ -42,8 +42,9 @@ std::optional<std::string> usual_template() {
   return utf8_of(path_of(*program).parent_path().parent_path() / "share" / "chronormal" / "report.html");
 }
 
-// Reads the template of the page: the file that --template names, or else the built-in template, or else the one that
-// is installed with the program. Called before any computation, so that no work is lost if the template cannot be read.
+// Reads the template of the page: the file that --template names, or else the built-in template, or else the template
+// that is installed with the program. Runs before any computation, so that no work is lost if the template cannot be
+// read.
 Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();

@@ -117,7 +117,6 @@ std::string spelled(const Option& option) {
   return takes_several(option) && names_of(option).empty() ? text + "..." : text;
 }
 
-// Returns the first line of the help of an option.
 std::string brief(const Option& option) { return option.help.substr(0, option.help.find('\n')); }
 
 // Returns the meaning of an option for help: the first line of its text and, if `all` is true, the sentences that

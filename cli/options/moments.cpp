@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::size_t kMostTimes = 1000000;
 
-// Splits a list at a separator.
 std::vector<std::string_view> split(std::string_view list, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t first = 0;;) {

@@ -49,8 +49,8 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
-// Returns the fault in the value of an option that takes a number, or an empty text. The parser would treat an empty
-// value as a missing option, and accept "nan" as a number.
+// Describes the fault in the value of an option that takes a number. Returns an empty text if there is no fault. The
+// parser would treat an empty value as a missing option, and accept "nan" as a number.
 template <class T>
 std::string fault_of_number(const T*, const std::string& value) {
   constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
@@ -92,7 +92,6 @@ void say_where_help_is(std::string_view command) {
   say_raw(formatted("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
 }
 
-// Prints the error, and returns the exit code of the error.
 int report(const std::string& command, const Error& error) {
   say(command, error.text(), Tone::kError);
   if (error.code == ErrorCode::kUsage) say_where_help_is(command);

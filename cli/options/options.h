@@ -41,13 +41,13 @@ struct Option {
   Rules rules = {};
 };
 
-/// An option that other commands have but this one refuses. The reason may name an alternative.
+/// An option that other commands have and this command refuses. The reason may name an alternative.
 struct RefusedOption {
   std::string name, reason;
 };
 
-/// A command of the program. Its options are in several tables in order; the first table chooses the input, and help
-/// prints it last.
+/// A command of the program, whose options are in several tables. The options of the first table choose the input; the
+/// help lists them last.
 struct Command {
   std::string name, summary;
   std::vector<std::vector<Option>> tables;

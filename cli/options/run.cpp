@@ -1,5 +1,5 @@
 // Describes a run by its options and its files, compares this description with the one in the journal of an interrupted
-// run, and finds the share of the work of this process.
+// run, and finds which share of the work this process does.
 #include "cli/options/run.h"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Implements ranks in a build without MPI: this process is the only one.
+// Implements ranks in a build without MPI: this process is the only rank.
 #include <cstdlib>
 #include <utility>
 

@@ -44,8 +44,8 @@ State& state() {
 
 bool is_first() { return state().rank == kFirst; }
 
-// Returns true if this process is a rank. Open MPI's mpirun, every PMIx (srun, Open MPI 5) and every PMI (MPICH, Intel
-// MPI) set one of these variables for each rank.
+// Returns true if this process is a rank. Open MPI's mpirun, every launcher with PMIx (srun, Open MPI 5) and every
+// launcher with PMI (MPICH, Intel MPI) set one of these variables for each rank.
 bool was_started_as_rank() {
   constexpr const char* kVariables[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(std::begin(kVariables), std::end(kVariables),

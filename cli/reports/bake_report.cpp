@@ -145,8 +145,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// Returns for each viewer the errors by which the report judges the baked file. They are the errors of the audits, if
-// there are audits and no deltas are fitted to the animations alone. Otherwise they are the errors that bake measured.
+// Returns for each viewer the errors by which the report judges the baked file: the errors of the audits, if there are
+// audits and no deltas are fitted to the animations alone, or else the errors that bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;

@@ -174,7 +174,7 @@ std::string named_or_numbered(const std::string& name, const char* kind, std::si
   return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
-// Formats a weight with two decimals. Exporters compute weights, so that a weight of 0 or 1 may be stored as a slightly
+// Formats a weight with two decimals. Exporters compute weights, so a weight of 0 or 1 may be stored as a slightly
 // different number.
 std::string weight_cell(double weight) {
   std::string text = formatted("{:.2f}", weight);

@@ -24,7 +24,7 @@ namespace chronormal::cli {
 void prepare_process() noexcept;
 
 /// Sets a text that is printed after the line about a signal or lack of memory. The text includes its line feed;
-/// nullptr means no text. It must live as long as it may be printed.
+/// nullptr means no text. The text must live as long as it may be printed.
 void say_at_end(const char* text) noexcept;
 
 }  // namespace chronormal::cli

@@ -4,7 +4,7 @@
 ///     comparing [=========               ]  38 %, 12.5 segments/s, 3 min 20 s left
 ///
 /// Rate and time left are measured from the first report of progress, so that work of an earlier run counts as done but
-/// does not raise the rate. They are shown after one second.
+/// does not raise the rate. Rate and time left appear after one second.
 #ifndef CLI_TERMINAL_PROGRESS_H_
 #define CLI_TERMINAL_PROGRESS_H_
 

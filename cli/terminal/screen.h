@@ -16,8 +16,8 @@ namespace chronormal::cli {
 /// else 80.
 [[nodiscard]] std::size_t columns_of_output();
 
-/// Returns true if a stream, such as kStandardOutput, shows colours. This is so if the stream is a terminal with
-/// colours, or if CLICOLOR_FORCE is set and not 0. NO_COLOR turns colours off in any case.
+/// Returns true if a stream, such as kStandardOutput, shows colours: if the stream is a terminal with colours, or if
+/// CLICOLOR_FORCE is set and not 0. NO_COLOR turns colours off in any case.
 [[nodiscard]] bool shows_colour(int stream);
 
 /// Return the text with marks of emphasis for a title, an error or a warning. An empty text stays empty.

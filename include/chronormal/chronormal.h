@@ -1,6 +1,6 @@
 /// chronormal: the normals of triangle meshes that deform. Includes all public headers of the library `chronormal`, in
 /// the order in which they build on each other. A header includes only headers of its own folder and of folders that
-/// come earlier in this list. chronormal_io.h has files and the workflows on them.
+/// come earlier in this list. chronormal_io.h adds the headers for files and for the workflows on files.
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
@@ -31,7 +31,7 @@
 #include "chronormal/analysis/containment.h"
 // Exact reference normals, and statistics of angular errors: sum, mean, rms and maximum.
 #include "chronormal/analysis/quality.h"
-// The times when a face collapses, and the side from which a viewer sees the face. Both are exact.
+// The exact times when a face collapses, and the exact sides from which a viewer sees the face.
 #include "chronormal/analysis/signs.h"
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, coinciding faces
 

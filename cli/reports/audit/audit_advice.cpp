@@ -103,7 +103,7 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   return text + "-weighted";
 }
 
-// Returns words for what `chronormal bake` will do to this file, as far as the audit can predict that.
+// Says in words what `chronormal bake` will do to this file, as far as the audit can predict that.
 std::string outcome(const Audited& input) {
   if (input.document() == nullptr) return "makes a glTF file with true normals at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);

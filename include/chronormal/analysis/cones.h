@@ -51,8 +51,8 @@ struct NormalCone {
   friend constexpr bool operator==(const NormalCone&, const NormalCone&) = default;
 };
 
-/// Returns the half-angle of a cone in radians. It is at most pi / 2, except for the whole sphere, which has pi. The
-/// empty cone has 0.
+/// Returns the half-angle of a cone in radians: pi for the whole sphere, 0 for the empty cone, and at most pi / 2 for
+/// every other cone.
 [[nodiscard]] double half_angle(const NormalCone& cone) noexcept;
 
 /// Writes the cone of each element over the times [t0, t1]. If a control normal of the interval nearly vanishes, so
@@ -67,7 +67,7 @@ void normal_cones(std::span<const ControlNormals> normals, double t0, double t1,
 void face_normal_cones(const Segment& segment, IndexRange faces, double t0, double t1,
                        std::span<NormalCone> result) noexcept;
 
-/// Returns the cone of a vertex or corner over the times [t0, t1]. Its normal is the sum of the normals of the given
+/// Returns the cone, over the times [t0, t1], of a vertex or corner whose normal is the sum of the normals of the given
 /// faces (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face.
 /// Preconditions: the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 [[nodiscard]] NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
@@ -159,7 +159,7 @@ struct ShutterNormal {
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 
-/// Returns the mean normal and the mean unit normal of a vertex or corner over the times [t0, t1]. Its normal is the
+/// Returns the mean normal and the mean unit normal, over the times [t0, t1], of a vertex or corner whose normal is the
 /// sum of the normals of the given faces (NormalGroups::faces()). Always computes with integers, which takes some
 /// microseconds for each face. Preconditions: the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 [[nodiscard]] ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces,

@@ -60,8 +60,8 @@ class Containment {
   /// Prepares a mesh for any number of segments and points, in O(corners log corners). The positions may be those of
   /// any keyframe. They only tell which faces are close to each other, and do not change any result. Errors:
   /// kInvalidInput for a mesh that is not closed. The message gives the number of boundary edges, which belong to a
-  /// single face. It also gives the number of edges that several faces share but that occur more often in one direction
-  /// than in the other.
+  /// single face, and the number of edges that several faces share but that occur more often in one direction than in
+  /// the other.
   [[nodiscard]] static Result<Containment> make(const Topology& topology, const Points& points,
                                                 VectorView<const float> positions);
 

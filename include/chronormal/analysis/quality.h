@@ -3,7 +3,7 @@
 /// The angles between the interpolated and the exact normal are summed over all elements and segments of a mesh, at N
 /// equidistant t = i / (N - 1) of each segment. A sample is one element at one t. A sample whose exact normal is zero
 /// is counted as degenerate and left out of the sum. A sample whose exact normal has a direction, but for which the
-/// scheme has none, is counted as missing. It is left out, too.
+/// scheme has none, is counted as missing and left out, too.
 ///
 /// The exact normals that schemes are compared with are computed as in the paper, by the cross product (eq. 1) of
 /// vertices interpolated at t, in double and from positions alone. This computation uses neither control normals nor

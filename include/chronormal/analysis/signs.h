@@ -80,10 +80,10 @@ struct FaceCollapses {
 //     for (const FacingChange& change : facing.changes()) ...    // seen edge-on at a t in [change.lower, change.upper]
 //
 // Certain    the sides in their order, and that each bracket contains its root of f and no root is outside of the
-//            brackets. Both are exact for the given positions and viewer: floating point with a proven bound decides,
-//            or else integers. A bracket has a width of about 1e-14 divided by the slope of f, and at most
-//            kWidestBracket; or it is two neighbouring doubles, or the root itself. Roots without a double between them
-//            count as one. A root below 2^-200 is not distinguished from 0.
+//            brackets. Sides and brackets are exact for the given positions and viewer: floating point with a proven
+//            bound decides, or else integers. A bracket has a width of about 1e-14 divided by the slope of f, and at
+//            most kWidestBracket; or it is two neighbouring doubles, or the root itself. Roots without a double between
+//            them count as one. A root below 2^-200 is not distinguished from 0.
 // Polygons   the side of a non-planar polygon is the side of its vector area, seen from its first corner.
 // Units      t: fraction of the segment; directions: any nonzero length.
 // Threads    pure. Only find_silhouettes() allocates memory and may throw.
@@ -146,7 +146,7 @@ struct Facing {
 void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                   std::span<Facing> result) noexcept;
 
-/// Decides the sides of a single face. This takes several times as long per face as a call for many faces.
+/// Decides the sides of a single face, which takes several times as long per face as a call for many faces.
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const View& view) noexcept;
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;

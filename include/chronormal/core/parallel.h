@@ -67,9 +67,9 @@ enum class Threads { kOne, kAll };
 [[nodiscard]] std::size_t thread_count() noexcept;
 
 /// Sets the number of threads that parallel_for() uses on this thread during the object's lifetime. The number may
-/// exceed the number of cores, up to 64. Tests, benchmarks, and programs that reserve some cores use it. Nested loops
-/// share these threads. Objects may be nested; only the innermost is used. If the system grants no threads, loops run
-/// on the calling thread.
+/// exceed the number of cores, up to 64. Tests, benchmarks, and programs that reserve some cores use this class. Nested
+/// loops share these threads. Objects may be nested; only the innermost is used. If the system grants no threads, loops
+/// run on the calling thread.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

@@ -110,7 +110,7 @@ template <class T, std::size_t N>
   return value;
 }
 
-/// The roots of a polynomial of degree up to N in [0, 1].
+/// The roots in [0, 1] of a polynomial of degree up to N.
 template <std::size_t N>
 struct Roots {
   std::array<double, N> t{};  ///< the roots in ascending order; a root of even multiplicity may be listed once or twice

@@ -149,7 +149,7 @@ struct GltfMesh {
   std::vector<double> weights;              ///< the default weight of each target; 0 if the file has none
   std::vector<GltfExpression> expressions;  ///< the expressions of a VRM avatar that set weights of this mesh
   std::optional<GltfBakeMark> mark;         ///< the mark of a bake, if the mesh has one that can be understood
-  /// The error in the mark of a bake, if the mark cannot be understood. Only some callers report it.
+  /// The error in the mark of a bake, if the mark cannot be understood. Only some callers report this error.
   std::optional<Error> mark_fault;
 };
 
@@ -220,8 +220,8 @@ struct GltfOptions {
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = 100;  ///< the limit of memory, as a multiple of the file's size (InputOptions)
   bool strict = false;              ///< true to refuse files for which GltfDocument::notes() would not be empty
-  /// A function that finds buffers and images by their paths below the asset's folder. If it is empty, they are read
-  /// from the file system.
+  /// A function that finds buffers and images by their paths below the asset's folder. If the function is empty,
+  /// buffers and images are read from the file system.
   FileResolver resolve = {};
 };
 

@@ -63,8 +63,8 @@ struct InputOptions {
   std::string animation = {};
   bool world = false;  ///< true to move the vertices of a glTF file to their places in the scene
   /// True to move the vertices of a glTF file by the skins of its nodes, to their places in the scene even without
-  /// `world`. Under an animation, vertices move on curves. These are cut into straight pieces, at most max_expansion
-  /// between two keys.
+  /// `world`. Under an animation, vertices move on curves, which are cut into straight pieces, at most max_expansion
+  /// pieces between two keys.
   bool skins = false;
   bool allow_external = false;  ///< true if a glTF file may refer to files outside of its folder
   /// The largest memory that reading a file may cause, as a multiple of the file's size. At least 32 MiB are always
@@ -98,10 +98,10 @@ struct InputOptions {
   /// cut into straight pieces (motion/paths.h), at most max_expansion pieces for a segment, and these pieces are the
   /// segments of the motion.
   std::string path = "linear";
-  /// True to leave positions in the files until they are needed. This is possible for mesh files, .pc2 and .mdd, and
-  /// for .npy and .npz files that are uncompressed and in C order. Other inputs are read when they are opened, and so
-  /// are mesh files if the normals of all keyframes are kept. Callers that set this should use Input::stream(). An
-  /// error in a keyframe is found when the keyframe is read.
+  /// True to leave positions in the files until they are needed. Positions can stay in mesh files, in .pc2 and .mdd,
+  /// and in .npy and .npz files that are uncompressed and in C order. Other inputs are read when they are opened, and
+  /// so are mesh files if the normals of all keyframes are kept. Callers that set this option should use
+  /// Input::stream(). An error in a keyframe is found when the keyframe is read.
   bool stream = false;
   /// If all keyframes together take at most this number of bytes, each of them stays in memory once it was read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;

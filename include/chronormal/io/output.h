@@ -35,8 +35,8 @@ namespace chronormal {
 /// Writes a file from several pieces, one after the other, so that the caller need not copy them into one piece.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
-/// Removes the temporary files that write_output() is writing at the moment in all threads. It may be called in a
-/// signal handler, which must then end the process.
+/// Removes the temporary files that write_output() is writing at the moment in all threads. A signal handler may call
+/// this function, and must then end the process.
 void remove_temporaries() noexcept;
 
 /// Returns the names of `count` numbered files. One %d or %0Nd in the file name is replaced by the number, counted from

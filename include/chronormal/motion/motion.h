@@ -141,9 +141,9 @@ struct Motion {
   /// objects are never one point, even at the same place. If the list is empty, all vertices belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
-  /// The point that is (0, 0, 0) in the positions of all keyframes. It is nonzero only if a file has coordinates far
-  /// from the origin with more digits than float32 keeps. Code that writes positions to files adds this point. Normals
-  /// do not depend on it.
+  /// The vector that was subtracted from all positions of the file. The vector is nonzero only if a file has coordinates
+  /// far from (0, 0, 0) with more digits than float32 keeps. Code that writes positions to files adds the vector again.
+  /// Normals do not depend on it.
   std::array<double, 3> origin = {};
 
   /// Returns a view of segment i. Preconditions: the motion is valid (validate()), and i < segments.size().
@@ -228,7 +228,7 @@ class MotionStream {
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
-  /// Wraps a motion in memory, which must outlive the stream. It may be a mesh at rest.
+  /// Wraps a motion in memory, which must outlive the stream. The motion may be a mesh at rest.
   explicit MotionStream(const Motion& whole);
 
   /// Wraps a motion whose keyframes are read by `read` when they are needed. `outline` is the motion without positions,

@@ -63,7 +63,7 @@ struct Path {
 /// Returns the name of a kind: "linear", "catmull-rom" or "hermite".
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Reads a path: the name of its kind, and after a colon the tolerance of a curve, "catmull-rom:0.1". Errors: kUsage
-/// for another name, with all names, and for a tolerance that is not a number above 0 and at most 45.
+/// for another name, with all names, and for a tolerance that is not a number of degrees above 0 and at most 45.
 [[nodiscard]] Result<Path> make_path(std::string_view text);
 /// Checks that a motion can have paths of this kind. Errors: kUsage for curves in a motion that is not a sequence, and
 /// for kHermite if no keyframe has velocities.
@@ -112,15 +112,15 @@ inline constexpr double kTooSparse = 0.5;
 /// by 60 degrees from keyframe to keyframe has exactly the bend kTooSparse, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
-/// A comparison of the velocities that a file stores with the motion of its positions. It shows whether the velocities
-/// fit.
+/// A comparison of the velocities that a file stores with the motion of its positions, which shows whether the
+/// velocities fit.
 struct VelocityFit {
   /// The distance that vertices would move from keyframe to keyframe at the mean of the speeds at both ends, divided by
-  /// the distance that they really move. If velocities fit, this is 1 or slightly more. It is 100 if velocities are 100
-  /// times too large. It is 30 if velocities are per second, while the file has 30 frames per second that are read as
-  /// one second apart.
+  /// the distance that they really move. The ratio is 1 or slightly more if velocities fit, and 100 if velocities are
+  /// 100 times too large. The ratio is 30 if velocities are per second, while the file has 30 frames per second that
+  /// are read as one second apart.
   double length = 1;
-  /// The mean cosine of the angle between velocities and displacements, weighted by distance. It is -1 if all
+  /// The mean cosine of the angle between velocities and displacements, weighted by distance. The mean is -1 if all
   /// velocities are reversed.
   double direction = 1;
 

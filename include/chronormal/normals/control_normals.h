@@ -117,7 +117,7 @@ struct NodeTransform {
 /// the rotation does not change.) Precondition: t is in [0, 1].
 [[nodiscard]] NodeTransform interpolated(const NodeTransform& from, const NodeTransform& to, double t) noexcept;
 
-/// The matrix that transforms normals, for an affine transform.
+/// The matrix that transforms normals if an affine transform moves the positions.
 struct NormalMatrix {
   std::array<Vec3d, 3> columns;
   /// True if the determinant of the transform is negative. Normals still point outwards, but corners are
@@ -129,8 +129,8 @@ struct NormalMatrix {
   }
 };
 
-/// Returns |det| times the inverse transpose of the linear part of a transform. It is computed from cofactors, without
-/// a division. If det = 0, the transform flattens space to a plane: the image of a normal is then perpendicular to that
+/// Returns |det| times the inverse transpose of the linear part of a transform, computed from cofactors without a
+/// division. If det = 0, the transform flattens space to a plane: the image of a normal is then perpendicular to that
 /// plane, or zero.
 [[nodiscard]] NormalMatrix normal_matrix(const AffineTransform& transform) noexcept;
 

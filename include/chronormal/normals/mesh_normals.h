@@ -61,9 +61,9 @@ struct MeshNormalsOptions {
   /// more. Normals are faster if all terms of the quadratic form in the weights fit; normals whose terms do not fit are
   /// computed from blended positions.
   std::size_t most_blend_bytes = std::size_t{1} << 30;
-  /// True to use float32 if all positions of blend shapes are blended, like FloatRecompute. This takes about half as
-  /// long, but there is then no guarantee for the normals: a position has an error of a unit in the last place, which
-  /// turns a normal by the ratio of that unit to the length of an edge. This is enough for shading. The option has no
+  /// True to use float32 if all positions of blend shapes are blended, like FloatRecompute. Float32 takes about half as
+  /// long, but guarantees no accuracy of the normals: a position has an error of a unit in the last place, which turns
+  /// a normal by the ratio of that unit to the length of an edge. The accuracy is enough for shading. The option has no
   /// effect if some normal belongs to a ring of more than 64 points.
   bool blends_in_float32 = false;
 };
@@ -94,9 +94,9 @@ class MeshNormals {
   /// motion must be valid, or at rest. Errors: those of make() for a topology, and those of make_groups().
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
-  /// Makes another object for the same mesh, for example one for each of many characters. It has no positions or
-  /// targets yet, and shares this object's memory of the topology and the groups of corners. The two objects may be
-  /// used at the same time.
+  /// Makes another object for the same mesh, for example one for each of many characters. The new object has no
+  /// positions or targets yet, and shares this object's memory of the topology and the groups of corners. Both objects
+  /// may be used at the same time.
   [[nodiscard]] MeshNormals another() const;
 
   MeshNormals(MeshNormals&&) noexcept;
@@ -164,13 +164,13 @@ class MeshNormals {
 
   /// Returns the number of outputs: faces, vertices or corners.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Returns the number of different normals, of which several outputs may share one. It is known once the first
-  /// segment or set of targets is given. For faces it is size().
+  /// Returns the number of different normals, of which several outputs may share one. The number is known once the
+  /// first segment or set of targets is given. For faces the number is size().
   [[nodiscard]] std::size_t element_count() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept;
   [[nodiscard]] const MeshNormalsOptions& options() const noexcept;
   /// Returns a bound of the error that a weighting other than area adds: the largest angle in radians, over all
-  /// elements, between the fitted curve and the exact weighted normal. It is 0 for area.
+  /// elements, between the fitted curve and the exact weighted normal. The bound is 0 for area.
   [[nodiscard]] double fit_bound() const noexcept;
   /// Returns the memory in bytes that the segment and the targets take.
   [[nodiscard]] std::size_t bytes() const noexcept;

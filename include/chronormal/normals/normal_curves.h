@@ -145,12 +145,12 @@ class NormalCurves {
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
   /// Returns the numbers of elements of true degree 0, 1 and 2. With a tolerance of 2^-12 or more, an element that
-  /// bends by less than its rounding errors in float32 may count as straight, which is degree 1. It is then also stored
-  /// as a straight curve, within the tolerance.
+  /// bends by less than its rounding errors in float32 may count as straight, which is degree 1. Such an element is
+  /// also stored as a straight curve, within the tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
-  /// Returns the number of elements that are uncertain at t. Their n(t) is so small relative to the terms of its sum
-  /// that double cannot guarantee 1e-6 rad. This happens only for curves made from control normals, never for curves
-  /// made from positions.
+  /// Returns the number of elements that are uncertain at t: n(t) is so small relative to the terms of its sum that
+  /// double cannot guarantee 1e-6 rad. Curves made from positions have no such elements; only curves made from control
+  /// normals can have some.
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
   /// Returns the number of elements that are evaluated in double, since float32 cannot guarantee the tolerance for
   /// them.

@@ -1,8 +1,8 @@
 /// Finds the corners of faces that share a normal, and computes the control normals of such groups of corners.
 ///
 /// The normal of a vertex is a sum over the faces around it; the normal of a corner is a sum over those faces around its
-/// vertex that smooth edges connect to its own face. Both divide the corners into *elements*, each with one normal. Two triangles 0 1 2
-/// and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
+/// vertex that smooth edges connect to its own face. Either rule divides the corners into *elements*, each with one
+/// normal. Two triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
 ///     corner    0  1  2  3  4  5            of face 0, and of face 1
 ///     vertex    0  1  2  2  1  3
@@ -32,8 +32,8 @@
 ///            bits.)
 /// Polygons   A face with two corners at one point is added twice.
 /// Degenerate An element without corners, or whose faces all have no area, has zero control normals; its unit normal is
-///            (0, 0, 0), and NormalCurves counts such elements. A face without area adds nothing, a duplicate face is added twice,
-///            and two faces of opposite orientation cancel.
+///            (0, 0, 0), and NormalCurves counts such elements. A face without area adds nothing, a duplicate face is
+///            added twice, and two faces of opposite orientation cancel.
 /// Threads    const functions may run at the same time.
 #ifndef CHRONORMAL_NORMALS_NORMAL_GROUPS_H_
 #define CHRONORMAL_NORMALS_NORMAL_GROUPS_H_

@@ -28,9 +28,9 @@
 ///            an edge of length 0, except by area and uniform, which do not depend on edges. A duplicate face is added
 ///            twice. A sum that is only the rounding error of its terms is (0, 0, 0).
 /// Bound      The bound of a fit is an angle in radians: at no t in [0, 1] is the angle between the quadratic and the
-///            weighted normal larger. It is proven in interval arithmetic, by Taylor polynomials of degree 4 with
-///            remainders over pieces of the segment. The segment is cut into more pieces, up to about 256, until the
-///            bound is within twice the largest sampled error, or 1e-9 rad. The bound is pi if nothing could be proven:
+///            weighted normal larger. The bound is proven in interval arithmetic, by Taylor polynomials of degree 4
+///            with remainders over pieces of the segment. The segment is cut into more pieces, up to about 256, until
+///            the bound is within twice the largest sampled error, or 1e-9 rad. The bound is pi if nothing could be proven:
 ///            if a face of the element loses its area inside the segment (the weighted normal jumps there, except by
 ///            area-angle), if the sum vanishes, or if the error of the quadratic exceeds a right angle. Bounds for
 ///            angle and area-angle are looser if corners are nearly straight, or edges have nearly no length.

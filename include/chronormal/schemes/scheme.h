@@ -45,9 +45,9 @@ struct ElementBlock {
   /// The control normals, one for each element; `recompute` does not read them.
   std::span<const ControlNormals> normals;
   bool are_faces = true;  ///< false for vertices or corners, which have no edges
-  /// A function that returns the exact normal of the i-th element of the block at t, not scaled to length 1. It is
-  /// empty if the control normals are exact. Otherwise the control normals are only a fit, which is exact at both ends
-  /// and at t = 1/2.
+  /// A function that returns the exact normal of the i-th element of the block at t, not scaled to length 1. The
+  /// function is empty if the control normals are exact. Otherwise the control normals are only a fit, which is exact
+  /// at both ends and at t = 1/2.
   std::function<Vec3d(std::size_t i, double t)> exact = {};
 };
 
@@ -64,10 +64,10 @@ struct OperationCounts {
   friend bool operator==(const OperationCounts&, const OperationCounts&) = default;
 };
 
-/// The default of `anchor_interval` in Scheme::play(), in steps. It keeps the drift, which is the error that playback
-/// adds, below 5e-6 rad for polynomials of degree up to 3 and for arcs on the built-in morphs (docs/paper.md, section
-/// 3). It keeps the drift of `polynomial` below 5e-5 rad, by a bound on every rounding. If a scheme normalises a short
-/// vector, as linear does between nearly antipodal ends, its drift is larger by the inverse of the length of this
+/// The default of `anchor_interval` in Scheme::play(), in steps. The default keeps the drift, which is the error that
+/// playback adds, below 5e-6 rad for polynomials of degree up to 3 and for arcs on the built-in morphs (docs/paper.md,
+/// section 3). The drift of `polynomial` stays below 5e-5 rad, by a bound on every rounding. If a scheme normalises a
+/// short vector, as linear does between nearly antipodal ends, its drift is larger by the inverse of the length of this
 /// vector.
 inline constexpr std::size_t kDefaultAnchorInterval = 64;
 

@@ -23,7 +23,7 @@
 ///            error, 180 degrees, and is counted.
 /// No normal  samples whose n(t) is below 1e-4 of the largest control normal of its element over the motion are counted
 ///            separately, and are not part of the mean or the worst error. Their rendered normal must be finite; and it
-///            must not be zero if the faces around have an area, since these are drawn.
+///            must not be zero if the faces around have an area, since such faces are drawn.
 /// Faint      samples without a normal whose n(t) is larger than the effect of rounding positions to float32. They
 ///            still have a direction, and rendered normals that point backwards must not pass. So is_within() of audits
 ///            and viewers checks their angle, reduced by the effect of that rounding.
@@ -69,8 +69,8 @@ enum class AuditRule {
 /// Finds a rule by its name. Errors: kUsage for an unknown name, with all names.
 [[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
 
-/// The error in degrees up to which normals do not count as faulty. It is this large because some files store normals
-/// in 8 bits.
+/// The error in degrees up to which normals do not count as faulty. The limit is this large because some files store
+/// normals in 8 bits.
 inline constexpr double kAuditFault = 1;  // in degrees
 
 /// The number of random poses of a mesh that are judged if poses are requested without a list of them.
@@ -90,11 +90,11 @@ struct AuditOptions {
   /// The weighting of the true normals, which should be the weighting of the program that made the file. By default,
   /// each mesh or sequence has the weighting that its stored base normals clearly follow, or else area.
   std::optional<Weighting> weighting = {};
-  /// For glTF, the document from which the audited document was baked; it must have the same meshes. Its normals then
-  /// count as the author's. By default, the normals of the audited document do.
+  /// For glTF, the original document, from which the audited document was baked, and which must have the same meshes.
+  /// The normals of the original then count as the author's. By default, the normals of the audited document do.
   const GltfDocument* author = nullptr;
-  /// For glTF, the lowest and the highest weight at which each target is judged alone. Both are finite, and the first
-  /// is smaller.
+  /// For glTF, the lowest and the highest weight at which each target is judged alone: two finite numbers, of which the
+  /// first is smaller.
   std::array<double, 2> weights = {0, 1};
   /// For glTF: if is_posed is true, the poses are judged in addition to the motions of the file. A pose is judged in
   /// the meshes whose targets it names, or that have as many targets as it has weights. If there are no poses,
@@ -110,7 +110,7 @@ struct AuditOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// The motion that is judged. It is a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
+/// The motion that is judged: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
 /// expression, or the weights with which a file opens. Requested poses are the samples of a single subject.
 struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
@@ -231,8 +231,8 @@ struct Audit {
   std::array<double, 2> span = {};  ///< for a sequence: the times of its first and last keyframe
   std::optional<CutPath> cut = {};  ///< the cut of curved paths; the caller that has cut them sets it, for reports
   std::vector<AuditSubject> subjects;
-  /// The number of targets, tracks and expressions that move no vertex whose normals can be judged. They are not in
-  /// `subjects`.
+  /// The number of targets, tracks and expressions that are not in `subjects`, because they move no vertex whose
+  /// normals can be judged.
   std::size_t still = 0;
   MotionError error;                 ///< errors of all subjects
   std::optional<std::size_t> worst;  ///< index of the subject with the worst error

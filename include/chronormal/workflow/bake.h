@@ -50,8 +50,8 @@ inline constexpr double kLeastKeyTolerance = 0.001;
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< by default kSmallest, and kExact for sequences
-  /// The viewers to bake for. If the list is empty, these are the viewers that add up deltas (three.js, Babylon.js,
-  /// PlayCanvas, Bevy), and the viewers that keep unit normals (Godot, Filament) are added to `spared`.
+  /// The viewers to bake for. If the list is empty, the bake is for the viewers that add up deltas (three.js,
+  /// Babylon.js, PlayCanvas, Bevy), and the viewers that keep unit normals (Godot, Filament) are added to `spared`.
   std::vector<Viewer> viewers = {};
   /// Viewers in which normals should not become worse. Among candidates that are otherwise equal, one that makes no
   /// normal worse in these viewers is preferred.
@@ -124,8 +124,8 @@ struct ShownErrors {
   }
 };
 
-/// The errors of a mesh in one viewer before and after a bake. They are the errors of normals as the skins of the nodes
-/// with the mesh transform them.
+/// The errors of a mesh in one viewer before and after a bake. The skins of the nodes with the mesh transform the
+/// normals before these are compared.
 struct ViewerChange {
   struct Errors {
     ShownErrors before, after;
@@ -160,7 +160,7 @@ struct BakedCandidate {
   /// True if a skin does more than rotate and scale uniformly, so that `played` depends on it.
   bool skinned = false;
   /// The worst error in degrees that compressors among the named viewers cause by rounding, for the chosen candidate.
-  /// No candidate can avoid this error, so the choice ignores it. It is 0 if no compressor is named.
+  /// No candidate can avoid this error, so the choice ignores it. The error is 0 if no compressor is named.
   double rounded = 0;
 };
 
@@ -181,7 +181,7 @@ struct BakedMesh {
   std::vector<GltfExtraTarget> extras;  ///< correction targets, added now or by an earlier bake
   /// The number of bytes of new arrays, without those that are shared with an earlier mesh, plus the growth of tracks.
   std::size_t bytes = 0;
-  /// For kExact, the number of moving targets that no animation drives. They are baked as with kEndpoint.
+  /// For kExact, the number of moving targets that no animation drives, and that are therefore baked as with kEndpoint.
   std::size_t undriven = 0;
   std::size_t left_flat = 0;  ///< number of primitives without NORMAL, which stay flat
   /// The number of vertices whose stored base normal is zero or nearly zero, so that deltas cannot be added to it.
@@ -191,7 +191,7 @@ struct BakedMesh {
   /// The number of targets whose tangents were not perpendicular to the true normals. For viewers that add up tangents,
   /// these tangents are recomputed.
   std::size_t new_tangents = 0;
-  /// Number of targets whose new tangents would exceed most_delta_bytes; they keep their tangents.
+  /// The number of targets that keep their tangents, because new tangents would exceed most_delta_bytes.
   std::size_t left_tangents = 0;
   std::size_t stilled = 0;       ///< number of targets that moved normals but no positions; their deltas are now zero
   std::size_t without_base = 0;  ///< number of vertices whose faces have no area in the base (docs/cli.md)

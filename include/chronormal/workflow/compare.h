@@ -65,9 +65,9 @@ struct CompareOptions {
   std::size_t samples = 21;          ///< number of samples per segment, both ends included; at least 2
   Access access = Access::kRandom;
   /// A function that is called in the calling thread with the number of units of work that are done, and their total.
-  /// It may be empty.
+  /// The function may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  /// The elements whose normals are compared. They are faces unless set, as in the tables of the paper.
+  /// The elements whose normals are compared: faces by default, as in the tables of the paper.
   ElementOptions elements = {ElementKind::kFaces};
   /// The weighting of faces in the normals of vertices and corners. Normals with a weighting other than area are not
   /// quadratic in time. Schemes are then prepared from the exact weighted normals, and `polynomial` is the quadratic
@@ -98,8 +98,7 @@ struct SchemeComparison {
   /// Number of (element, segment) combinations that are evaluated in double.
   std::size_t flagged = 0;
   bool sequential = false;  ///< true if the scheme was played step by step
-  /// The time of prepare() in nanoseconds per element. It includes computing the control normals if the scheme uses
-  /// them.
+  /// The time of prepare() in nanoseconds per element, including the time for control normals if the scheme uses them.
   double prepare_ns = 0;
   double evaluate_ns = 0;  ///< nanoseconds per element and sample
   double bytes = 0;        ///< number of bytes per element that an evaluation reads
@@ -238,8 +237,8 @@ struct BlendComparison {
 // All other comparisons assume straight motion between two keyframes, and compare normals with the exact normals of
 // this motion. For blend shapes and shutters the assumption is true, but a simulation or a capture moves differently
 // between its frames. The frames themselves show the difference. All keyframes except every N-th are left out, and
-// normals are interpolated between the kept keyframes. They are compared with the normals of the keyframes that were
-// left out.
+// normals are interpolated between the kept keyframes. These normals are compared with the normals of the keyframes
+// that were left out.
 //
 // Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex
 //            moves on cubics through the kept keyframes. Its velocity at a keyframe is that of the parabola through the

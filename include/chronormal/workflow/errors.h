@@ -41,7 +41,7 @@ inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 /// The layout of the fine bins, MotionError::counts. There is one bin below 2^-10 degrees, and then 128 bins for each
 /// doubling of the angle, so that percentiles have an error of at most 0.001 degrees or 0.8 %.
 inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
-// The number of fine bins of the histogram of errors. They cover angles up to 256 degrees.
+// The number of fine bins of the histogram of errors, which cover angles up to 256 degrees.
 inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};
 
 /// A vertex at a moment. All numbers are those of the file, counted from 0.
