@@ -1,6 +1,6 @@
-// Measures the speed of every path, which is a way to compute normals (chronormal_bench, ./run bench). Compares it with
-// the speed of this machine's memory and with libraries that people use today. docs/benchmarks.md is made from the
-// output of the option --json.
+// Measures the speed of every path, which is a way to compute normals (chronormal_bench, ./run bench). Compares the
+// paths with the speed of this machine's memory and with libraries that people use today. docs/benchmarks.md is made
+// from the output of the option --json.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

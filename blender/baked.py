@@ -44,7 +44,7 @@ def _actions_of(keys: bpy.types.Key) -> Iterable[bpy.types.Action]:
 
 
 def make_idle(mesh: bpy.types.Mesh, names: list[str | None] | None = None) -> int:
-    """Makes the correction keys of a baked mesh idle, and removes its mark. Returns the number of these keys.
+    """Makes the correction keys of a baked mesh idle, and removes the mesh's mark. Returns the number of these keys.
 
     `names` are the names of the keys that the importer made from the targets, with None for a target without a key.
     """

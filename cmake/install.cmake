@@ -1,6 +1,6 @@
 # `cmake --install` installs the libraries and the program as far as they were built, the headers, and the files that
 # find_package(chronormal) and pkg-config need. The package has the component `io` if chronormal_io was built, and `c`
-# if chronormal_c was.
+# if chronormal_c was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

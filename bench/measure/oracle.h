@@ -52,7 +52,7 @@ class Oracle {
   /// which |n(t)| is below 1e-7 of the areas of their faces.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
   /// Returns the angles in radians between the given exact normals and normal_of(element). If the exact normals are
-  /// sums weighted by area, leaves out elements whose sum almost vanishes, so that it has no direction.
+  /// sums weighted by area, leaves out elements whose sum almost vanishes and therefore has no direction.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:

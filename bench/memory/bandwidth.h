@@ -30,7 +30,7 @@ struct Bandwidth {
 class BandwidthMeter {
  public:
   /// Requests a measurement of the bandwidth for a working set of this many bytes. append() adds the functions that
-  /// measure it.
+  /// measure this bandwidth.
   void want(std::size_t working_set);
   /// Appends to `functions` the functions that measure the bandwidths for which want() asked.
   void append(std::vector<Timed>& functions);

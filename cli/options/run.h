@@ -35,8 +35,8 @@
 namespace chronormal::cli {
 
 /// A run of a command, with its share of the work and its journal. If a run with --resume is destroyed before finish(),
-/// the destructor prints how to continue, or removes the journal if it has no results yet. A signal that ends the
-/// program during the run has the same effect.
+/// the destructor prints how to continue, or removes the journal if the journal has no results yet. A signal that ends
+/// the program during the run has the same effect.
 class CommandRun {
  public:
   /// Creates a run. Without --resume, `journal` must be empty.

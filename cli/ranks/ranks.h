@@ -62,7 +62,7 @@ void maximize_numbers(std::span<double> numbers);
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 
-/// Ends a task on all ranks. If all succeeded, the exit code is that of the first rank; otherwise the error is
+/// Ends a task on all ranks. If all ranks succeeded, the exit code is that of the first rank; otherwise the error is
 /// reported. No other function of this file may be called afterwards. Returns the exit code.
 [[nodiscard]] int end_ranks(const Result<int>& result);
 

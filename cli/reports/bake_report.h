@@ -14,8 +14,8 @@ namespace chronormal::cli {
 /// Returns true if some deltas of a result are fitted to the animations.
 [[nodiscard]] bool any_of_animations(const GltfBake& bake);
 
-/// Return the report on a bake: the errors before and after, and what was added. For a glTF file, it has a table with a
-/// line for each mesh.
+/// Return the report on a bake: the errors before and after, and what was added. For a glTF file, the report has a
+/// table with a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 

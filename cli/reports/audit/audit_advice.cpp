@@ -35,7 +35,7 @@ double limit_of(const Audited& input) { return std::min(kAuditFault, input.limit
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
 
-// Returns true if there is a mesh and it was baked before.
+// Returns true if there is a mesh and the mesh was baked before.
 bool was_baked(const Audited& input, std::optional<std::size_t> mesh) {
   return input.document() != nullptr && mesh && input.document()->meshes()[*mesh].mark.has_value();
 }

@@ -3,7 +3,7 @@
 /// The part of the curve n(t) over [t0, t1] has three control normals of its own (eq. 5 of docs/theory.md, restricted
 /// to the interval), and every n(t) of the interval is a convex combination of these three vectors. A circular cone
 /// with a half-angle of at most 90 degrees is convex. If such a cone contains the three control normals, the cone
-/// contains every normal of the interval. (A cone around the normals at t0 and t1 need not contain the others.)
+/// contains every normal of the interval. (A cone around the normals at t0 and t1 may miss normals in between.)
 ///
 /// A cone is four floats, made for the test of back-face culling. For a direction of view d, from the eye into the
 /// scene,

@@ -15,7 +15,7 @@
 ///
 /// Ties       A point on the surface counts as if moved by an infinitely small step along +x, and if it is still on the
 ///            surface then, along +y, then +z. So if two closed meshes share a face, a point on the face is inside
-///            exactly one of the two. A cube from (0, 0, 0) to (1, 1, 1) contains its face x = 0, but not its face
+///            exactly one of them. A cube from (0, 0, 0) to (1, 1, 1) contains its face x = 0, but not its face
 ///            x = 1. The step is the same at all times, so a resting point on a resting face does not cross the face.
 /// Closed     Every edge must occur equally often in both directions among its faces, so that w is an integer
 ///            everywhere. Surfaces may intersect themselves, and have several pieces. Edges are between points of the

@@ -24,7 +24,7 @@
 namespace chronormal {
 
 /// Writes n(t) of a range of faces. n(t) is a sum of products. If the sum is below 1e-10 of the size of these products,
-/// double cannot tell it from rounding errors, and integer arithmetic computes it. The result is (0, 0, 0) if n(t) is
+/// double cannot tell it from rounding errors, and integer arithmetic computes n(t). The result is (0, 0, 0) if n(t) is
 /// zero, or so close to zero that rounding t to a double would change its direction. Threads: pure. Preconditions:
 /// result has faces.count elements; t is in [0, 1].
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;

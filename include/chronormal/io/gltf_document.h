@@ -172,8 +172,8 @@ struct GltfTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
   /// True if the track was assembled from several channels of KHR_animation_pointer, one for each weight. `channel` is
-  /// then the first of them. The track has the keys of all channels, and is cubic if one of them is. Files in which
-  /// only some of these channels are STEP are refused.
+  /// then the first of these channels. The track has the keys of all channels, and is cubic if one channel is cubic.
+  /// Files in which only some of these channels are STEP are refused.
   bool is_assembled = false;
 };
 

@@ -75,9 +75,9 @@ struct InputOptions {
   /// True to keep the velocities that the mesh files of a sequence store. All files are then read when the input is
   /// opened. Velocities in formats with a whole motion are always kept.
   bool velocities = false;
-  /// A function that returns the bytes of files by their names. If it is empty, files are read from the file system.
-  /// Otherwise `files` are names and not patterns or folders, and the buffers of a glTF file are requested by their
-  /// paths below its folder.
+  /// A function that returns the bytes of files by their names. If the function is empty, files are read from the file
+  /// system. Otherwise `files` are names and not patterns or folders, and the buffers of a glTF file are requested by
+  /// their paths below its folder.
   FileResolver resolve = {};
   /// A function that is called after each file has been read, with the number of files read so far and the number of
   /// all files.
@@ -103,7 +103,7 @@ struct InputOptions {
   /// so are mesh files if the normals of all keyframes are kept. Callers that set this option should use
   /// Input::stream(). An error in a keyframe is found when the keyframe is read.
   bool stream = false;
-  /// If all keyframes together take at most this number of bytes, each of them stays in memory once it was read.
+  /// If all keyframes together take at most this number of bytes, each keyframe stays in memory once it was read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }

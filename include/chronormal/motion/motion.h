@@ -3,7 +3,7 @@
 /// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A sequence
 /// of keyframes 0, 1, 2 has the segments from 0 to 1 and from 1 to 2; blend shapes with base 0 and targets 1, 2 have
 /// segments from 0 to 1 and from 0 to 2. Both are a Motion, whose kind tells them apart: code that computes normals
-/// need not know, but messages for people mention times for a sequence and weights for targets.
+/// need not know the kind, but messages for people mention times for a sequence and weights for targets.
 ///
 /// find_instant() converts a time into a segment and its local t.
 ///
@@ -87,7 +87,7 @@ class Topology {
 };
 
 /// A view of one straight piece of a motion, from which control normals and schemes are prepared. The Motion must
-/// outlive it.
+/// outlive the segment.
 struct Segment {
   const Topology* topology = nullptr;
   VectorView<const float> from;  ///< positions at t = 0, one for each vertex
@@ -141,9 +141,9 @@ struct Motion {
   /// objects are never one point, even at the same place. If the list is empty, all vertices belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
-  /// The vector that was subtracted from all positions of the file. The vector is nonzero only if a file has coordinates
-  /// far from (0, 0, 0) with more digits than float32 keeps. Code that writes positions to files adds the vector again.
-  /// Normals do not depend on it.
+  /// The vector that was subtracted from all positions of the file. The vector is nonzero only if a file has
+  /// coordinates far from (0, 0, 0) with more digits than float32 keeps. Code that writes positions to files adds the
+  /// vector again. Normals do not depend on it.
   std::array<double, 3> origin = {};
 
   /// Returns a view of segment i. Preconditions: the motion is valid (validate()), and i < segments.size().

@@ -80,8 +80,8 @@ struct VelocityShares {
   [[nodiscard]] std::vector<float> velocities(std::span<const std::span<const float>> positions) const;
 };
 /// Computes the shares of keyframe `at`. The velocity there is that of the parabola through the keyframe and its two
-/// neighbours. At the first and the last keyframe it is that of the cubic through the nearest four keyframes, or
-/// through all if there are fewer. With two keyframes the motion is straight. Preconditions: times ascend; at <
+/// neighbours. At the first and the last keyframe the velocity is that of the cubic through the nearest four keyframes,
+/// or through all if there are fewer. With two keyframes the motion is straight. Preconditions: times ascend; at <
 /// times.size().
 [[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
 

@@ -30,12 +30,12 @@
 /// Bound      The bound of a fit is an angle in radians: at no t in [0, 1] is the angle between the quadratic and the
 ///            weighted normal larger. The bound is proven in interval arithmetic, by Taylor polynomials of degree 4
 ///            with remainders over pieces of the segment. The segment is cut into more pieces, up to about 256, until
-///            the bound is within twice the largest sampled error, or 1e-9 rad. The bound is pi if nothing could be proven:
-///            if a face of the element loses its area inside the segment (the weighted normal jumps there, except by
-///            area-angle), if the sum vanishes, or if the error of the quadratic exceeds a right angle. Bounds for
-///            angle and area-angle are looser if corners are nearly straight, or edges have nearly no length.
-///            NormalCurves adds its own 1e-6 rad. Elements without any area have zero control normals and the bound 0.
-///            Elements of a single triangle have its direction, which is exact, and the bound 0.
+///            the bound is within twice the largest sampled error, or 1e-9 rad. The bound is pi if nothing could be
+///            proven: if a face of the element loses its area inside the segment (the weighted normal jumps there,
+///            except by area-angle), if the sum vanishes, or if the error of the quadratic exceeds a right angle.
+///            Bounds for angle and area-angle are looser if corners are nearly straight, or edges have nearly no
+///            length. NormalCurves adds its own 1e-6 rad. Elements without any area have zero control normals and the
+///            bound 0. Elements of a single triangle have its direction, which is exact, and the bound 0.
 /// Threads    Everything except the fit is pure. Results have the same bits on every system.
 /// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21
 ///            (2005): uniform, angle, area, max, inverse-edges and inverse-roots.

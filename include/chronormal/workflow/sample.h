@@ -2,8 +2,8 @@
 ///
 /// A moment is
 ///     a time     of a sequence, in seconds; there is no motion before its first time and after its last
-///     weights    of blend shapes, one for each target: the vertices are at base + sum of w (target - base). They may
-///                be negative or more than 1, which extrapolates
+///     weights    of blend shapes, one for each target: the vertices are at base + sum of w (target - base). A
+///                weight may be negative or more than 1, which extrapolates
 ///     neither    for a mesh at rest: one keyframe and no segment
 ///
 /// Area-weighted normals are within 1e-6 rad of the result of exact arithmetic, also for thin and small faces and for
