@@ -19,7 +19,7 @@ _hidden: list[tuple[str, numpy.ndarray]] = []
 # The number of degrees at the end of the colour scale.
 _top = 10.0
 
-# The name of the colour attribute that was active in a mesh before paint() added another. The key is the mesh's name.
+# The name of the colour attribute that was active in a mesh before paint() added its own. The key is the mesh's name.
 _active_before: dict[str, str] = {}
 
 

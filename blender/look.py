@@ -24,7 +24,7 @@ LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
 # The smallest distance between two vertices in the panel's list, as a share of the object's size. Two listed frames are
 # at least this share of all frames apart.
 APART = 0.1
-# Poses and places whose error is below this number of degrees are not in the panel's list.
+# Poses and vertices whose error is below this number of degrees are not in the panel's list.
 VISIBLE = 0.1
 
 
@@ -235,7 +235,7 @@ def _list_poses(state: State, poses: list[Pose]) -> None:
 
 
 def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
-    """Chooses the places to list: the vertices with the largest errors that are not close to each other."""
+    """Chooses the places to list, which are the vertices with the largest errors that are not close to each other."""
     vertices = numpy.empty(len(mesh.loops), numpy.int32)
     mesh.loops.foreach_get("vertex_index", vertices)
     places = truth.places(mesh.vertices)

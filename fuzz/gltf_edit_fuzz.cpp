@@ -29,7 +29,6 @@ struct Change {
   std::string pointer, value;
 };
 
-// Removes the first line of the text and returns it.
 std::string_view take_line(std::string_view& text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   text.remove_prefix(std::min(text.size(), line.size() + 1));

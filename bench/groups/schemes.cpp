@@ -61,7 +61,7 @@ std::vector<Vector> along_great_circle(const Oracle& oracle, double t) {
 }
 
 struct Expectation {
-  // A function that returns the expected normals. If it is empty, the exact normals are expected.
+  // A function that returns the expected normals. If the function is empty, the exact normals are expected.
   std::function<std::vector<Vector>(const Oracle&)> expected;
   double limit = kApproximationError;
   std::string note;

@@ -44,7 +44,6 @@ class Oracle {
   /// most 100,000 of them. Otherwise chooses 4,096 random elements, which are the same in every run.
   Oracle(const Segment& segment, Elements elements);
 
-  /// Returns the indices of the chosen elements.
   [[nodiscard]] std::span<const std::uint32_t> elements() const { return elements_; }
   /// Returns n(t) of each chosen element, not normalised.
   [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;

@@ -29,8 +29,8 @@ struct Size {
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;
-  /// A function that returns the expected result for the elements of the oracle. If it is empty, the exact normals are
-  /// expected.
+  /// A function that returns the expected result for the elements of the oracle. If the function is empty, the exact
+  /// normals are expected.
   std::function<std::vector<Vector>(const Oracle&)> expected = {};
 };
 

@@ -283,7 +283,6 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
   return why_torn(audited, error);
 }
 
-// Returns the sentence that says why the errors in a viewer are beyond the limits.
 std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
     return formatted("{}: a mesh has {} than this viewer supports; {}", found.viewer.title,

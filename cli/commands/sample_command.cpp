@@ -80,7 +80,6 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
           options.common.table(true)};
 }
 
-// The parsed options of the command line.
 struct Request {
   SampleOptions sample;
   AskedMoments asked;

@@ -82,7 +82,6 @@ struct JudgeArguments {
 /// Returns an error of kUsage; `place` is the option or the file to blame.
 [[nodiscard]] Error misuse(std::string place, std::string message);
 
-// Return the descriptions of the commands.
 [[nodiscard]] Command audit_command();
 [[nodiscard]] Command bake_command();
 [[nodiscard]] Command compare_command();

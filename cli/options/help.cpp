@@ -96,7 +96,6 @@ std::string flowing(const std::string& text, std::size_t indent, std::size_t col
   return result;
 }
 
-// Returns a row of a list: a name and its meaning.
 std::string row(const std::string& name, const std::string& text, std::size_t columns) {
   const std::size_t at = std::min(kTextColumn, columns / 2);
   std::string line(kNameColumn, ' ');

@@ -94,7 +94,7 @@ class CommandRun {
   [[nodiscard]] Status finish();
 
  private:
-  // Returns the parts of all ranks on the first rank, and an empty list on the others.
+  // Returns the parts of all ranks on the first rank, and an empty list on the other ranks.
   [[nodiscard]] static std::vector<Part> gather(const std::string& own);
 
   std::string command_;

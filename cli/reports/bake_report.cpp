@@ -167,7 +167,6 @@ std::string torn(double edges) {
   return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
-// Describes the poses that a table of viewers covers.
 std::string poses_words(bool of_animations) {
   return of_animations ? "in the animations of the file (--animations-only does not correct single sliders)"
                        : "in the animations of the file, and with each slider alone";
@@ -195,7 +194,6 @@ std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
   return viewers_table(bake, report, false) + viewers_table(bake, report, true);
 }
 
-// Returns the titles of the viewers of the given rows: "three.js, Babylon.js".
 std::string titles_of(const std::vector<ViewerRow>& rows) {
   std::string text;
   for (const ViewerRow& row : rows) text.append(text.empty() ? "" : ", ").append(row.viewer->title);

@@ -240,7 +240,6 @@ std::string gltf_contents(const InspectedGltf& gltf) {
                    counted(document.animations().size(), "animation", "animations"));
 }
 
-// Returns the number of primitives that are left out of the inspection.
 std::size_t count_left_out(const InspectedGltf& gltf) {
   std::set<std::pair<std::size_t, std::size_t>> parts;
   for (const GltfPart& part : gltf.parts) parts.emplace(part.mesh, part.primitive);

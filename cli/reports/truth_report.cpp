@@ -22,7 +22,6 @@ const TruthRow* find_row(const TruthComparison& comparison, const std::string& p
 
 std::string mean_of(const TruthRow& row) { return four_decimals(in_degrees(row.quality.mean())); }
 
-// Returns sentences that explain the errors in the table.
 std::string remarks(const TruthComparison& c) {
   constexpr double kAsGood = 0.98;
   std::string text;

@@ -37,7 +37,8 @@ inline constexpr std::size_t kMostAuditRows = 16;
 /// Formats the moment of a sample: "weight 0.55" or "1.25 s".
 [[nodiscard]] std::string moment_words(const AuditSubject& subject, double at);
 
-/// Names a vertex of a motion at a moment.
+/// Names the vertex, the motion and the moment of a sample: "vertex 17 of Head, primitive 1, target 0 (smile) at weight
+/// 0.55".
 [[nodiscard]] std::string place_words(const Audited& input, const AuditSubject& subject, const AuditPlace& place);
 
 }  // namespace chronormal::cli
