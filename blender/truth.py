@@ -46,8 +46,8 @@ def values_now(o: bpy.types.Object) -> numpy.ndarray:
 
 
 class Subject:
-    """A copy of an object whose keys can be set by weights. Use it in a `with` statement, which removes the copy at
-    the end."""
+    """A copy of an object whose keys can be set by weights. Use the copy in a `with` statement, which removes the copy
+    at the end."""
 
     def __init__(self, o: bpy.types.Object) -> None:
         if not exported_keys(o.data):

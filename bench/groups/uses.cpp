@@ -69,8 +69,8 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Checks the results of some faces against the sides that the viewer sees at kSamples values of t. A face that is
-// called front or back must show only this side at all these t. Throws std::runtime_error otherwise.
+// Checks the results of some faces against the sides that the viewer sees at kSamples values of t. Throws
+// std::runtime_error if a face that is called front or back shows its other side at one of these t.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

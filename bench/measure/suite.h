@@ -63,8 +63,8 @@ struct Row {
 
 struct SuiteOptions {
   bool quick = false;
-  /// A POSIX regular expression that selects cases by their names, "GROUP/SIZE/ORDER/NAME". If it is empty, all cases
-  /// run.
+  /// A POSIX regular expression that selects cases by their names, "GROUP/SIZE/ORDER/NAME". If the expression is empty,
+  /// all cases run.
   std::string filter;
   std::size_t threads = 2;
 };

@@ -45,7 +45,7 @@ class BandwidthMeter {
  private:
   AlignedBytes arena_;
   // The bandwidths for which want() asked. The key is the working set in bytes, rounded. An entry has no figures until
-  // it is measured.
+  // its bandwidth is measured.
   std::map<std::size_t, Bandwidth> measured_;
 };
 

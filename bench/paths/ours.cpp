@@ -74,7 +74,7 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
 
 // Makes the case of normals from positions in float32, with a limit in radians. Float32 rounds positions relative to
 // the size of the whole mesh. In a mesh of more elements the edges are shorter, so the error of a normal is larger, and
-// the limit grows. An element without a normal in float32 gets (0, 0, 0), and the oracle leaves it out.
+// the limit grows. An element without a normal in float32 gets (0, 0, 0), and the oracle leaves out such an element.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)

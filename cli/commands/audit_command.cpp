@@ -60,7 +60,7 @@ std::string shell_word(const std::string& word) {
 }
 
 // Returns the words of a command line that name the input, select its keyframes, and choose the path of vertices. A
-// recommended command contains them.
+// recommended command contains these words.
 std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
@@ -339,7 +339,7 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
 }
 
 // Returns the exit code for two files, which is the worse of their exit codes. A file that cannot be judged is worse
-// than one that exceeds the tolerance.
+// than a file that exceeds the tolerance.
 int worse_exit(int a, int b) {
   constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
                                               static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};

@@ -112,8 +112,8 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Returns true if the user gave a limit, and the bake of a mesh exceeds it or leaves tangents that do not fit the new
-// normals.
+// Returns true if the user gave a limit, and the bake of a mesh exceeds this limit or leaves tangents that do not fit
+// the new normals.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake,
                const GltfDocument& document) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;

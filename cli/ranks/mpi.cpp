@@ -1,7 +1,7 @@
 // Implements ranks by MPI. A text is sent as its number of bytes, followed by the bytes in blocks whose size MPI can
 // count. An error is sent as one text. A rank that waits sleeps between polls, because the ranks of one machine share
-// its cores. While it waits, it also looks for errors: the first rank looks for errors of the others, and the others
-// look for the first rank's message that all must end.
+// its cores. While it waits, it also looks for errors: the first rank looks for errors of the other ranks, and the
+// other ranks look for the first rank's message that all ranks must end.
 //
 // The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL. Open MPI should
 // wait a second in between, but the signal that a rank has ended cuts this time short for all other ranks. On a busy

@@ -118,9 +118,9 @@ struct ViewerRow {
   bool is_named = true, is_better = false;
 };
 
-// Returns the errors that bake itself measured for each viewer, over the poses of some meshes. If of_animations is
-// true, these are the meshes whose deltas are fitted to the animations, otherwise all other meshes. The averages cover
-// fewer samples than those of an audit.
+// Returns the errors that bake itself measured for each viewer, over the poses of some meshes: if of_animations is
+// true, the meshes whose deltas are fitted to the animations, otherwise all other meshes. The averages cover fewer
+// samples than those of an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {

@@ -1,5 +1,5 @@
 // Groups findings into lines. The mesh of a head may have dozens of targets with the same fault, so one line covers all
-// of them, and names the worst one.
+// these targets, and names the worst target.
 #include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>

@@ -65,7 +65,7 @@ struct CertifyOptions {
   std::size_t most_pieces = 256;  // may not exceed 256
 };
 
-/// Bounds of the errors of the three control normals n0, m and n1 of an element. Each is the largest possible
+/// Bounds of the errors of the three control normals n0, m and n1 of an element. Each bound is the largest possible
 /// difference between a component of the control normal and the exact value of this component.
 using ControlErrors = std::array<double, 3>;
 

@@ -74,9 +74,9 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
                                               double t1) noexcept;
 
 /// Returns a cone that contains all the given cones. Callers use it for a cluster with the cones of its faces, for a
-/// node of a hierarchy with those of its children, or for a face with those of several segments. Empty cones are
-/// ignored; if all cones are empty, the result is empty. The result is a few percent wider than the smallest possible
-/// cone, and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
+/// node of a hierarchy with the cones of its children, or for a face with its cones of several segments. Empty cones
+/// are ignored; if all cones are empty, the result is empty. The result is a few percent wider than the smallest
+/// possible cone, and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
 // The bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer. They are computed for an
@@ -92,9 +92,9 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 //     dot(normalize(cone_apex - camera), cone_axis) >= cone_cutoff                             perspective
 //     dot(center - camera, cone_axis) >= cone_cutoff * length(center - camera) + radius        perspective, no apex
 //
-// The tests may be computed in float32, because cone_cutoff includes 2^-20 for their rounding. The 8-bit form, which is
-// decoded as x / 127, includes it, too. A cluster that must never be culled has the axis 0 and the cutoff 1 (127). A
-// cluster without a normal at any time, which shows nothing, has the axis 0 and the cutoff 0.
+// The tests may be computed in float32, because cone_cutoff includes 2^-20 for their rounding. The 8-bit form of the
+// cutoff, which is decoded as x / 127, includes 2^-20, too. A cluster that must never be culled has the axis 0 and the
+// cutoff 1 (127). A cluster without a normal at any time, which shows nothing, has the axis 0 and the cutoff 0.
 //
 // Proof      docs/theory.md, section 20. The proof is for vertices exactly on straight lines, p(t) = (1-t) p0 + t p1. A
 //            renderer that moves vertices in float32 may draw either side of faces that are edge-on, with or without

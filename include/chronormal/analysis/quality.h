@@ -33,8 +33,8 @@ void reference_normals(const Segment& segment, IndexRange faces, double t, std::
 /// given faces, which may nearly cancel. Threads: pure. Precondition: t is in [0, 1].
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
-/// The normal n(t) of a face in double, and the sum of the absolute values of the products that make it up, which
-/// bounds the rounding error of the normal.
+/// The normal n(t) of a face in double, and the sum of the absolute values of the products that n(t) consists of. The
+/// sum bounds the rounding error of the normal.
 struct ReferenceArea {
   Vec3d n;
   double products = 0;
@@ -64,8 +64,8 @@ struct Quality {
   /// between normals[i] and exact[i], which need not be unit vectors.
   void add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first);
 
-  /// Adds the sums of another object to those of this one. If the same objects are added in the same order, the sums
-  /// have the same bits.
+  /// Adds the sums of another object to the sums of this object. If the same objects are added in the same order, the
+  /// sums have the same bits.
   void add(const Quality& other);
 };
 

@@ -2,8 +2,8 @@
 ///
 /// n(t) vanishes for no t, at one or two instants, or in the whole segment. At a simple zero the face turns over: the
 /// directions before and after are antipodal. At a double zero it does not turn over: the face shrinks to nothing and
-/// grows again with the same direction. Positions in float32 are integers times a power of two, so this is decided in
-/// integers, without a threshold and without rounding.
+/// grows again with the same direction. Positions in float32 are integers times a power of two, so collapses are
+/// decided in integers, without a threshold and without rounding.
 ///
 ///     const Collapses found = find_collapses(segment, face);
 ///     for (const Collapse& one : found.instants()) ...       // one.lower <= t <= one.upper

@@ -111,8 +111,8 @@ class GltfSkin;
 }
 
 /// A function that returns the bytes of a file by its name, for callers that do not read from the file system. The
-/// bytes must outlive everything that was opened with them. An error that the function returns is passed on to the
-/// caller.
+/// bytes must outlive everything that was opened with these bytes. An error that the function returns is passed on to
+/// the caller.
 using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
 /// The interpolation of the weights of targets between two keys of an animation.
@@ -255,7 +255,7 @@ class GltfDocument {
   [[nodiscard]] const std::vector<GltfNode>& nodes() const noexcept;
   [[nodiscard]] const std::vector<GltfAnimation>& animations() const noexcept;
   /// Returns the transform by which a node moves its mesh: its matrix, or its scale, rotation and translation, combined
-  /// with those of its ancestors. O(ancestors).
+  /// with the transforms of its ancestors. O(ancestors).
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Lists the extensions that the file uses, by their names.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
@@ -341,8 +341,8 @@ class GltfEdit {
   ~GltfEdit();
 
   /// Replaces the value at a JSON pointer. If there is no such value, adds the member that the last token of the
-  /// pointer names, and objects that are missing on the way to it. `json` is the text of a value. Errors in the pointer
-  /// or in the text are reported by bytes() and write().
+  /// pointer names, and objects that are missing on the way to this member. `json` is the text of a value. Errors in
+  /// the pointer or in the text are reported by bytes() and write().
   void set(std::string pointer, std::string json);
   /// Appends a value to the array at a JSON pointer. The array is created if it is missing.
   void append(std::string pointer, std::string json);

@@ -59,7 +59,7 @@ struct InputOptions {
   std::vector<std::string> samples;  ///< names of built-in morphs, which take the place of files
   std::string base;                  ///< the base mesh, if the files are morph targets; empty for other inputs
   double frames_per_second = 1;      ///< keyframes per second in formats without times; from 1e-9 to 1e9
-  /// The animation of a glTF file to read, by name or index. If it is empty, the morph targets are read.
+  /// The animation of a glTF file to read, by name or index. If no animation is named, the morph targets are read.
   std::string animation = {};
   bool world = false;  ///< true to move the vertices of a glTF file to their places in the scene
   /// True to move the vertices of a glTF file by the skins of its nodes, to their places in the scene even without
@@ -115,10 +115,10 @@ struct InputOptions {
 [[nodiscard]] Status check_input(const InputOptions& options);
 
 /// Finds the glTF files among names, patterns and folders. Each glTF file is a separate input. A folder stands for all
-/// glTF files in it and in its folders, except for names that begin with a dot and links to folders; a folder whose own
-/// files are meshes is a sequence. Patterns and folders are sorted by number. The result is empty if there are no glTF
-/// files. Nothing is opened, so a name need not belong to an existing file. Errors: kUsage for glTF files together with
-/// other inputs, or with meshes in one folder.
+/// glTF files in the folder and in its subfolders, except for names that begin with a dot and links to folders; a
+/// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. The result is empty if
+/// there are no glTF files. Nothing is opened, so a name need not belong to an existing file. Errors: kUsage for glTF
+/// files together with other inputs, or with meshes in one folder.
 [[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
 
 /// The normals that files store beside a motion: for each keyframe three numbers per corner, not necessarily of unit
@@ -163,17 +163,17 @@ class Input {
   [[nodiscard]] const GltfDocument* document() const noexcept;
 
   /// Returns notes for the user, in whole sentences, on how the input was read: that listed files were sorted, or that
-  /// parts of a file were skipped. For a document these are the notes known so far.
+  /// parts of a file were skipped. For a document, returns the notes that are known so far.
   [[nodiscard]] std::vector<std::string> notes() const;
   /// Returns the numbers in the file names of a sequence, or no value if the names have no such numbers.
   [[nodiscard]] const std::optional<FileSeries>& series() const noexcept;
 
   /// Returns the motion. For a document, the motion that the options select is read at the first call. With allow_mesh
-  /// it may be a mesh without motion, which is one keyframe without a segment; otherwise it is valid (motion/motion.h).
-  /// All keyframes are in memory; callers that need keyframes one by one should use stream(). Errors: for a document,
-  /// those of GltfDocument; kUsage for an animation that does not exist; kInvalidInput if nothing moves, or if
-  /// keyframes would take more than 4 GiB; if keyframes were left in files, those of reading them; for curves, those of
-  /// cut_into_segments().
+  /// the motion may be a mesh at rest, which is one keyframe without a segment; otherwise the motion is valid
+  /// (motion/motion.h). All keyframes are in memory; callers that need keyframes one by one should use stream().
+  /// Errors: for a document, those of GltfDocument; kUsage for an animation that does not exist; kInvalidInput if
+  /// nothing moves, or if keyframes would take more than 4 GiB; if keyframes were left in files, those of reading them;
+  /// for curves, those of cut_into_segments().
   [[nodiscard]] Result<const Motion*> motion();
 
   /// Returns the motion as a stream, which reads keyframes on demand and lives as long as the input. Errors: those of
@@ -193,8 +193,8 @@ class Input {
   /// weights, without the keyframes that were added by cutting cubic splines. Errors: those of motion().
   [[nodiscard]] Result<std::vector<double>> key_times();
 
-  /// Returns the normals that the input stores, as far as KeepShading keeps them. For a document these are the normals
-  /// of its base, in the space of the meshes. If curves are cut, only those of keyframe 0 are returned. Errors: those
+  /// Returns the normals that the input stores, as far as KeepShading keeps them. For a document, returns the normals
+  /// of its base, in the space of the meshes. If curves are cut, returns only the normals of keyframe 0. Errors: those
   /// of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();
   /// Returns the smoothing group of each face in the first keyframe (io/mesh/mesh_frame.h), or an empty span if the

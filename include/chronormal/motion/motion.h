@@ -119,7 +119,7 @@ struct Motion {
     std::vector<float> velocities = {};
     /// The velocities of the vertices, (V, 3) in units of length per second, at the first or last keyframe of a part of
     /// a sequence. They are the velocities of curves through the whole sequence (PathKind::kCatmullRom in
-    /// motion/paths.h). If this is empty, velocities are computed from the keyframes of the motion.
+    /// motion/paths.h). If the list is empty, velocities are computed from the keyframes of the motion.
     std::vector<float> end_velocities = {};
     /// The remainders of rounding positions to float32, (V, 3), or empty if nothing was rounded. The exact place of a
     /// vertex is the sum of its position and its residual. Files store only positions.
@@ -181,8 +181,8 @@ struct LocalTime {
   LocalTime(double local) noexcept : t(local), rest(1 - local), time(local) {}  // NOLINT(google-explicit-constructor)
   operator double() const noexcept { return t; }                                // NOLINT(google-explicit-constructor)
 
-  /// Returns the local t of a time between two other times. A time outside of them gets the t of the nearer end.
-  /// Precondition: start < end, and both are finite.
+  /// Returns the local t of a time between two other times. A time before `start` or after `end` gets the t of the
+  /// nearer end. Precondition: start < end, and both are finite.
   [[nodiscard]] static LocalTime between(double start, double time, double end) noexcept;
 
   [[nodiscard]] bool is_double() const noexcept { return start == 0 && end == 1; }
@@ -254,7 +254,7 @@ class MotionStream {
 
   /// Calls the watcher immediately for every keyframe that is in memory. Later, calls it for each keyframe that is
   /// read, in the thread that reads the keyframe and before anyone else can use the keyframe. There is one watcher at a
-  /// time; an empty function removes it. Errors: those of the watcher, from this call and from each hold.
+  /// time; an empty function removes the watcher. Errors: those of the watcher, from this call and from each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
   /// Returns true if keyframes stay in memory once they were read, so that holding all of them costs no additional

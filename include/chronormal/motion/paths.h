@@ -42,8 +42,8 @@ namespace chronormal {
 enum class PathKind {
   kLinear,      ///< vertices move on straight lines, as in programs that play motions
   kCatmullRom,  ///< vertices move on cubics whose velocities follow from the keyframes (CubicSegment)
-  /// Vertices move on cubics with the velocities that the keyframes store. A keyframe without velocities gets those of
-  /// kCatmullRom.
+  /// Vertices move on cubics with the velocities that the keyframes store. A keyframe without velocities gets the
+  /// velocities of kCatmullRom.
   kHermite,
 };
 
@@ -149,7 +149,7 @@ struct CutPath {
 /// The default of the largest number of pieces into which one segment is cut.
 inline constexpr std::size_t kMostPieces = 100;
 
-/// A motion in memory whose curves have been cut into pieces. For kLinear it is the unchanged motion.
+/// A motion in memory whose curves have been cut into pieces. For kLinear, `motion` is the unchanged motion.
 struct CutMotion {
   Motion motion;
   CutPath cut;

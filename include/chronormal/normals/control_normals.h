@@ -48,9 +48,9 @@ void face_control_normals(const Segment& segment, IndexRange faces, std::span<Co
 /// Returns the true degree of n(t) in t: 0, 1 or 2. The normal of a translated face has degree 0, and that of a face
 /// with two vertices that move alike has at most degree 1. Other motions, such as a shear within the plane, have low
 /// degrees, too, so this function tests the coefficients and not the motion. A coefficient below 2^-28 of the largest
-/// control normal counts as zero. Leaving it out turns no direction by more than 1e-8 rad times the length of that
-/// control normal divided by |n(t)|. (A translation that was rounded to float32 is not exact, and may have degree 1 or
-/// 2.)
+/// control normal counts as zero. Leaving out such a coefficient turns no direction by more than 1e-8 rad times the
+/// length of that control normal divided by |n(t)|. (A translation that was rounded to float32 is not exact, and may
+/// have degree 1 or 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
 /// Returns n(t), by eq. 5, without scaling it to length 1. n(t) is a convex combination of the control normals, so its
@@ -144,8 +144,8 @@ std::size_t transform_unit_normals(const NormalMatrix& matrix, VectorView<const 
                                    VectorView<float> result) noexcept;
 
 /// Returns v turned by the smallest rotation that takes the unit vector `from` to the unit vector `to`. If the two are
-/// opposite, one of many half turns is chosen. Callers use this to keep the angle between an author's normal and the
-/// geometric normal while the mesh moves.
+/// opposite, one of many half turns is chosen. Callers use this function to keep the angle between an author's normal
+/// and the geometric normal while the mesh moves.
 [[nodiscard]] Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept;
 
 }  // namespace chronormal

@@ -135,8 +135,8 @@ class MeshNormals {
   /// the two lists must be of the same length.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes the unit normals at t with the given threads. With Threads::kAll it uses the thread pool of parallel.h,
-  /// which may allocate.
+  /// Writes the unit normals at t with the given threads. With Threads::kAll this function uses the thread pool of
+  /// parallel.h, which may allocate.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) const;
 
   /// Writes the control normals of a segment for every output, one output after the other. The tolerance of this object
@@ -159,7 +159,7 @@ class MeshNormals {
   std::size_t unit_normals(VectorView<float> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Octahedral> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Rgb10A2> result, IndexRange outputs = kAllOutputs) const noexcept;
-  /// Sets the weights and writes all normals in one call. With Threads::kAll it uses the thread pool of parallel.h.
+  /// Sets the weights and writes all normals in one call. Threads::kAll uses the thread pool of parallel.h.
   std::size_t unit_normals(std::span<const double> weights, VectorView<float> result, Threads threads = Threads::kOne);
 
   /// Returns the number of outputs: faces, vertices or corners.

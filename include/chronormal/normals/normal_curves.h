@@ -58,8 +58,8 @@ namespace chronormal {
 //                   DXGI R10G10B10A2, VK A2B10G10R10. Within 1.7e-3 rad.
 //
 // A component c of snorm N bits is the integer nearest to c (2^(N-1) - 1), in two's complement. (0, 0, 0), the result
-// for an element without a normal, is 0 in Rgb10A2. Octahedral cannot represent it, and gives 0, which is decoded as
-// (0, 0, 1).
+// for an element without a normal, is 0 in Rgb10A2. Octahedral cannot represent (0, 0, 0), and gives 0, which is
+// decoded as (0, 0, 1).
 
 /// A unit normal in four bytes. Each encoding has its own type, so that the compiler refuses to mix them up.
 struct Octahedral {

@@ -102,12 +102,13 @@ class Scheme {
   /// Returns true if prepare() reads the control normals of the block.
   [[nodiscard]] virtual bool uses_control_normals() const noexcept { return true; }
   /// Returns true if the scheme reads the vertices of faces, so that elements must be faces. Other schemes also accept
-  /// control normals of vertices and corners; of the segment they read only its index.
+  /// control normals of vertices and corners, and read nothing of the segment except its index.
   [[nodiscard]] virtual bool needs_faces() const noexcept { return false; }
   /// Begins to play the block at t = start, start + step, ... in [0, 1]. Polynomials are played by forward differences,
   /// and arcs by one rotation per step. The state drifts with every step, and is therefore recomputed after every
-  /// anchor_interval steps (never, if this is 0). Returns nullptr if the scheme cannot compute a step from the previous
-  /// step. The scheme must outlive the playback, and must not be prepared again while the playback is used.
+  /// anchor_interval steps (never, if anchor_interval is 0). Returns nullptr if the scheme cannot compute a step from
+  /// the previous step. The scheme must outlive the playback, and must not be prepared again while the playback is
+  /// used.
   [[nodiscard]] virtual std::unique_ptr<SchemePlayback> play(double start, double step,
                                                              std::size_t anchor_interval) const {
     (void)start, (void)step, (void)anchor_interval;

@@ -85,7 +85,8 @@ struct AuditOptions {
   /// For glTF, the number of segments of a track that are judged, approximately. In longer tracks only every second,
   /// third or later segment is judged. 0 stands for all segments.
   std::size_t most_segments = 0;
-  /// For glTF, the only animation to judge, by name or index. If it is empty, all targets and animations are judged.
+  /// For glTF, the only animation to judge, by name or index. If no animation is named, all targets and animations are
+  /// judged.
   std::string animation = {};
   /// The weighting of the true normals, which should be the weighting of the program that made the file. By default,
   /// each mesh or sequence has the weighting that its stored base normals clearly follow, or else area.

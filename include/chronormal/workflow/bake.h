@@ -45,7 +45,7 @@ class Expansion;  // limits the memory and the output that reading a file may ca
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< in degrees
 /// The smallest tolerance of the encoding kKeys, in degrees. If a tolerance were smaller, the rounding to float32 in
-/// viewers alone could exceed it.
+/// viewers alone could exceed the tolerance.
 inline constexpr double kLeastKeyTolerance = 0.001;
 
 struct BakeOptions {
@@ -78,10 +78,10 @@ struct BakeOptions {
   /// For sequences, the limit on memory and output, which the program sets; nullptr stands for no limit. A document has
   /// a limit of its own.
   const Expansion* expansion = nullptr;
-  /// The tolerance in degrees. For kSmallest it is the limit of the worst error. For kHarmless and kExact, correction
-  /// targets are left out as long as this changes no normal by more than the tolerance, and tracks are cut into lines
-  /// within the tolerance. For kKeys it is the largest error of a normal at any instant, and at least
-  /// kLeastKeyTolerance. The default is kHarmlessTolerance, or kExactBakeTolerance for kExact.
+  /// The tolerance in degrees. For kSmallest the tolerance is the limit of the worst error. For kHarmless and kExact,
+  /// correction targets are left out as long as leaving them out changes no normal by more than the tolerance, and
+  /// tracks are cut into lines within the tolerance. For kKeys the tolerance is the largest error of a normal at any
+  /// instant, and at least kLeastKeyTolerance. The default is kHarmlessTolerance, or kExactBakeTolerance for kExact.
   std::optional<double> tolerance = {};
   /// The largest number of targets of a mesh for kSmallest, including the targets that the mesh has already. The
   /// default is the number that the viewers support.
@@ -147,7 +147,7 @@ struct BakedCandidate {
   std::string_view name;
   std::size_t targets = 0, bytes = 0;  ///< `bytes` counts new deltas and tangents, and the growth of tracks
   /// The errors in the worst of the named viewers, along the animations of the file, also between keys, and in the
-  /// file's constant weights. If no animation drives weights, these are the errors with each target alone, and in the
+  /// file's constant weights. If no animation drives weights, the errors are those with each target alone, and in the
   /// poses of the options, to which nothing was fitted. Samples count if n(w) is longer than a thousandth of n(0).
   /// Normals are transformed by the skins of the nodes with the mesh.
   ShownErrors played;
@@ -206,7 +206,7 @@ struct BakedMesh {
   /// pairs of targets.
   double resampling_error = 0;
   /// True if an animation drives a single weight of the mesh by KHR_animation_pointer. The mesh then gets no correction
-  /// targets; a bake with the encoding kExact fails if it needs any.
+  /// targets; a bake with the encoding kExact fails if the mesh needs any.
   bool has_lone_weight = false;
   /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
   /// normals.

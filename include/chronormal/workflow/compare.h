@@ -77,8 +77,8 @@ struct CompareOptions {
   bool keep_errors = false;   ///< true to keep every single error in Comparison::errors
   bool keep_samples = false;  ///< true to keep the errors of each sample in SchemeComparison::samples
   bool certify = false;       ///< true to bound the largest error at any time in SchemeComparison::certified
-  /// The tolerance in degrees, at least 0. If it is given, errors are certified, and Comparison::cheapest is the
-  /// cheapest scheme whose error never exceeds the tolerance.
+  /// The tolerance in degrees, at least 0. If a tolerance is given, errors are certified, and Comparison::cheapest is
+  /// the cheapest scheme whose error never exceeds the tolerance.
   std::optional<double> tolerance = {};
 };
 
@@ -168,7 +168,7 @@ struct BlendCompareOptions {
   /// The elements of a motion whose normals are compared. The elements of a glTF file follow from its stored normals.
   ElementOptions elements = {};
   /// An animation of a glTF file, by name or index, from which the weights come: up to `rows` of its weight vectors,
-  /// evenly spaced. If it is empty, weights are random.
+  /// evenly spaced. Without an animation, weights are random.
   std::string animation = {};
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -186,7 +186,7 @@ struct BlendError {
   BlendDeltas deltas = BlendDeltas::kFile;
   /// The errors of one kind of deltas. In max_at, `segment` is the number of the weight vector and `element` is the
   /// output. `count` is equal for all kinds: the number of samples whose geometry has a normal. `missing` counts the
-  /// samples whose rendered normal is zero, infinite or NaN; the error of these is 180 degrees.
+  /// samples whose rendered normal is zero, infinite or NaN; the error of such a sample is 180 degrees.
   Quality quality;
   std::vector<Weight> worst_weights;           ///< the active targets at the largest error
   std::optional<std::size_t> worst_primitive;  ///< the primitive with the largest error, for a glTF mesh

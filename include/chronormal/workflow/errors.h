@@ -54,7 +54,7 @@ struct AuditPlace {
 
 /// The numbers of errors in the fine bins, each of which is a narrow range of angles. Only bins that are not empty are
 /// stored, with 8 bytes each. Most errors of a small mesh are in a few bins, and a file may have thousands of motions,
-/// so this saves memory.
+/// so leaving out empty bins saves memory.
 class FineBins {
  public:
   class Bin {
@@ -142,7 +142,7 @@ struct MotionError {
 };
 
 /// The error of skinning: the angles between true normals as a skin transforms them and the normals of the skinned
-/// surface, over samples of vertices. No morph target can correct it.
+/// surface, over samples of vertices. No morph target can correct this error.
 struct SkinningError {
   std::size_t judged = 0;  ///< number of samples
   double sum = 0, worst = 0;

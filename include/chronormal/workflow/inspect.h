@@ -109,8 +109,8 @@ struct GltfPrimitiveInspection {
   std::size_t triangles = 0;
   std::size_t off_length = 0;  ///< number of stored normals whose length is not 1 within the rounding of 8-bit integers
   /// `doubled` is the number of vertices that coincide in the base with a vertex of lower number. `split` is the number
-  /// of these whose normal differs from that of the vertex with the lowest number, by more than kSplitNormalTolerance
-  /// of normals/normal_groups.h.
+  /// of doubled vertices whose normal differs from the normal of the vertex with the lowest number, by more than
+  /// kSplitNormalTolerance of normals/normal_groups.h.
   std::size_t doubled = 0, split = 0;
   /// The number of targets that move positions, and the numbers of these targets that also change normals or tangents.
   std::size_t moving = 0, moving_normals = 0, moving_tangents = 0;
@@ -136,10 +136,10 @@ struct GltfInspection {
 [[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
 
 /// Counts the vertices of a motion that coincide with a vertex of lower number in all keyframes, but have another
-/// stored normal. The normal is compared with that of the coinciding vertex that has the lowest number among those with
-/// a normal. The counted vertices are among those of Inspection::doubled, also across primitives. (Coinciding vertices
-/// belong to the same mesh and node, so normals need no transform.) Memory and errors are those of inspect().
-/// Precondition: the motion belongs to this document and these parts.
+/// stored normal. The normal is compared with the normal of the coinciding vertex that has the lowest number among
+/// those with a normal. The counted vertices are among those of Inspection::doubled, also across primitives.
+/// (Coinciding vertices belong to the same mesh and node, so normals need no transform.) Memory and errors are those of
+/// inspect(). Precondition: the motion belongs to this document and these parts.
 [[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
                                                       std::span<const GltfPart> parts);
 
