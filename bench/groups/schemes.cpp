@@ -17,9 +17,9 @@
 namespace chronormal::bench {
 namespace {
 
-// Limits of errors in radians. Schemes that follow the exact curve must agree with it up to rounding, and schemes that
-// interpolate exact normals must agree with their formula up to the rounding of float32. All other schemes are checked
-// for gross mistakes only.
+// Limits of errors in radians. Schemes that follow the exact curve must agree with this curve up to rounding, and
+// schemes that interpolate exact normals must agree with their formula up to the rounding of float32. All other schemes
+// are checked for gross mistakes only.
 constexpr double kExactError = 1e-6, kFormulaError = 2e-6, kApproximationError = 0.8, kPlayedError = 5e-5;
 constexpr std::size_t kSteps = 1024;
 

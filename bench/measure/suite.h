@@ -51,7 +51,7 @@ struct Case {
 struct Row {
   std::string group, name, library, note, size, order;
   std::size_t elements = 0, threads = 1, evaluations = 1;
-  /// Times of a run in nanoseconds for each element and evaluation: the median and the least. `spread` is the
+  /// The median and the least time of a run, in nanoseconds for each element and evaluation. `spread` is the
   /// interquartile range of the times divided by their median.
   double median_ns = 0, least_ns = 0, spread = 0;
   std::size_t repetitions = 0;

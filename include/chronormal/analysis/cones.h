@@ -142,7 +142,8 @@ struct ClusterBounds {
 struct ShutterNormal {
   Vec3d mean;       ///< mean of n(t), in squared units of length; for triangles twice the mean vector area
   Vec3d mean_unit;  ///< mean of n(t) / |n(t)|; zero if n is zero at all times
-  /// Bound of the distance between mean_unit and its exact value; about 1e-7 if n(t) stays away from zero.
+  /// A bound of the distance between mean_unit and its exact value. The bound is about 1e-7 if n(t) stays away from
+  /// zero.
   double error = 0;
 };
 

@@ -1,5 +1,4 @@
-/// Points and a closed mesh that deforms: finds the points that are inside, and when and where each point crosses the
-/// surface.
+/// Finds which points are inside a closed mesh that deforms, and when and where each point crosses the surface.
 ///
 /// In a segment the vertices move on straight lines, and so does a point. The point is in the plane of the face (a, b,
 /// c) when (p(t) - a(t)) . n(t), a cubic in t, is zero; if the point is then between the edges, it crosses the face.

@@ -139,7 +139,7 @@ struct CutPath {
   bool skins = false;        ///< the paths are those of vertices behind the skins of a glTF file; then `path` is linear
   std::size_t segments = 0;  ///< number of segments between the original keyframes
   std::size_t pieces = 0;    ///< number of pieces of all segments
-  /// Number of faces that miss the tolerance with any number of pieces, counted once for each segment.
+  /// The number of faces that miss the tolerance with any number of pieces, counted once for each segment.
   std::size_t beyond = 0;
   double rounding = 0;     ///< bound of the error of rounding a coordinate to float32, in units of length
   double bend = 0;         ///< bend_of() for the original keyframes

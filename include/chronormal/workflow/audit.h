@@ -82,8 +82,8 @@ struct AuditOptions {
   std::optional<AuditRule> rule = {};  ///< by default kGltf for glTF, and kNlerp for sequences
   /// The number of samples per segment. The default is 21, or fewer in long tracks, which get about 210 samples in all.
   std::optional<std::size_t> samples = {};
-  /// For glTF, the number of segments of a track that are judged, approximately. In longer tracks only every second,
-  /// third or later segment is judged. 0 stands for all segments.
+  /// For glTF, the approximate number of segments of a track that are judged. In a longer track, segments at equal
+  /// steps are judged. 0 stands for all segments.
   std::size_t most_segments = 0;
   /// For glTF, the only animation to judge, by name or index. If no animation is named, all targets and animations are
   /// judged.
@@ -103,7 +103,7 @@ struct AuditOptions {
   bool is_posed = false;
   std::vector<RigPose> poses = {};
   std::vector<Viewer> viewers = {};  ///< viewers that are judged, too; for glTF with the rule kGltf
-  /// For glTF: true to judge meshes in nodes with a skin as the skin transforms them.
+  /// True to judge a glTF mesh in a node with a skin as the skin transforms the mesh.
   bool skins = true;
   bool weld = true;          ///< true if vertices that coincide in all keyframes share a normal
   bool keep_errors = false;  ///< true to keep every single error in Audit::errors

@@ -264,7 +264,7 @@ struct SequenceBake {
     /// The number of keys that would be needed if all keyframes were keys, and if there were equally many keys between
     /// any two keyframes.
     std::size_t even = 0;
-    /// Number of samples, each a normal in a segment, that miss the tolerance with any keys, since the normal
+    /// The number of samples, each a normal in a segment, that miss the tolerance with any keys, because the normal
     /// collapses.
     std::size_t beyond = 0;
   };

@@ -56,7 +56,7 @@ struct CertifiedError {
   /// The first piece of a segment, as an interval of local t, on which the error may reach the upper bound.
   std::size_t segment = 0, element = 0;
   double from = 0, to = 1;
-  /// Number of (element, segment) combinations for which no bound below half a turn could be shown.
+  /// The number of (element, segment) combinations for which no bound below half a turn could be shown.
   std::size_t unbounded = 0;
 };
 
@@ -95,14 +95,14 @@ struct SchemeComparison {
   /// The number of (element, segment) combinations for which the scheme is not defined, so that it used a documented
   /// fallback.
   std::size_t fallbacks = 0;
-  /// Number of (element, segment) combinations that are evaluated in double.
+  /// The number of (element, segment) combinations that are evaluated in double.
   std::size_t flagged = 0;
   bool sequential = false;  ///< true if the scheme was played step by step
   /// The time of prepare() in nanoseconds per element, including the time for control normals if the scheme uses them.
   double prepare_ns = 0;
   double evaluate_ns = 0;  ///< nanoseconds per element and sample
   double bytes = 0;        ///< number of bytes per element that an evaluation reads
-  /// Operations per element and sample, for the kind of access that was measured.
+  /// The numbers of operations per element and sample, for the kind of access that was measured.
   OperationCounts operations;
   std::vector<Quality> samples = {};  ///< with keep_samples, the errors of each sample, segment by segment
   /// Bounds of the largest error; no value unless certificates were requested.
@@ -162,7 +162,7 @@ inline constexpr std::size_t kMostBlendRows = 10000;
 
 struct BlendCompareOptions {
   std::size_t rows = 100;  ///< number of weight vectors for each number of active targets; 1 to kMostBlendRows
-  /// Number of targets with nonzero weights; 0 stands for 1, 2, 4, 8, 16 and all, up to the number of targets.
+  /// The number of targets with nonzero weights; 0 stands for 1, 2, 4, 8, 16 and all, up to the number of targets.
   std::size_t active = 0;
   std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
   /// The elements of a motion whose normals are compared. The elements of a glTF file follow from its stored normals.
@@ -195,7 +195,7 @@ struct BlendError {
 
 /// The errors for one number of targets that are active at the same time.
 struct BlendErrors {
-  /// Number of active targets; for an animation, the largest number at any of its weight vectors.
+  /// The number of active targets; for an animation, the largest number at any of its weight vectors.
   std::size_t active = 0;
   std::size_t rows = 0;  ///< number of weight vectors
   std::vector<BlendError> deltas;

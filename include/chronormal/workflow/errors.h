@@ -96,7 +96,7 @@ struct MotionError {
   std::array<std::size_t, kAuditBins> histogram{};
   FineBins counts;            ///< the counts in the fine bins
   std::size_t no_normal = 0;  ///< number of samples that are not judged, since n(t) is too small to have a direction
-  /// Number of judged samples whose rendered normal cannot be lit; their error is 180 degrees.
+  /// The number of judged samples whose rendered normal cannot be lit. The error of such a sample is 180 degrees.
   std::size_t unlit = 0;
   AuditPlace unlit_at;  ///< the first sample that cannot be lit; has no meaning if there are none
   /// The number of samples that are not judged although the float32 positions determine a direction, since n(t) is
@@ -113,7 +113,7 @@ struct MotionError {
   /// a fold at such an edge that the surface does not have. Edges of faces, and seams between copies of a point, each
   /// count once at every sample.
   std::array<std::size_t, 3> torn{};
-  /// Number of samples at which edges were counted; 0 if none were counted, as in sequences.
+  /// The number of samples at which edges were counted; 0 if none were counted, as in sequences.
   std::size_t samples = 0;
   std::size_t most_torn = 0;  ///< the largest number of edges at one sample whose errors differ by more than 10 degrees
   AuditPlace most_torn_at;    ///< the first sample with this number of edges: mesh, segment and moment

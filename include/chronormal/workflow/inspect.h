@@ -46,7 +46,7 @@ struct SegmentInspection {
   Largest motion;              ///< the longest displacement of a vertex, in units of length of the file
   Largest turn;                ///< the largest angle in radians between the normals of a face at both ends
   std::size_t turned_far = 0;  ///< number of faces whose normals at both ends differ by more than 90 degrees
-  /// Number of faces that have no area, or nearly none, at an instant inside the segment.
+  /// The number of faces that have no area, or nearly none, at an instant inside the segment.
   std::size_t collapses = 0;
   std::size_t vanishing = 0;        ///< number of the faces in `collapses` that have exactly no area
   std::size_t turned_over = 0;      ///< number of the faces in `collapses` that have the opposite normal afterwards
@@ -62,16 +62,17 @@ struct Inspection {
   double diagonal = 0;                   ///< the diagonal of the bounding box
   Largest motion, turn;                  ///< the largest values over all segments
   Found doubled;                         ///< vertices that coincide with a vertex of lower number in all keyframes
-  /// Vertices that coincide with a vertex of lower number in keyframe 0; there are at least as many as in `doubled`.
+  /// The vertices that coincide with a vertex of lower number in keyframe 0. There are at least as many as in
+  /// `doubled`.
   Found doubled_at_start;
   Surface surface;
-  /// Faces that a fan around the first corner does not cover in keyframe 0, so that another triangulation is used.
+  /// The faces that a fan around the first corner does not cover in keyframe 0, so that another triangulation is used.
   Found cut;
   std::vector<SegmentInspection> segments;
 
   Places no_area;  ///< at keyframes: faces without area
   Places slivers;  ///< at keyframes: faces that are slivers, as inspect() defines them
-  /// In segments: faces whose normal vanishes at an instant inside, or becomes shorter there than 1e-6 of its control
+  /// The faces whose normal vanishes at an instant inside a segment, or becomes shorter there than 1e-6 of its control
   /// normals.
   Places collapses;
   Places vanishing;         ///< in segments: faces whose normal is exactly zero at an instant inside (analysis/signs.h)
