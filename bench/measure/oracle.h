@@ -2,8 +2,8 @@
 /// vertices and computes the normals by eq. 1 of docs/theory.md, all in double.
 ///
 /// The oracle calls no code of the library, neither for vectors nor for control normals. Differences of float32
-/// positions are exact in double up to the last bit, so the direction of a normal has an error of 1e-15 rad, times the
-/// length of the edges divided by the height of the triangle.
+/// positions are exact in double up to the last bit. The direction of a normal therefore has an error of 1e-15 rad,
+/// times the length of the edges divided by the height of the triangle.
 #ifndef BENCH_MEASURE_ORACLE_H_
 #define BENCH_MEASURE_ORACLE_H_
 

@@ -10,10 +10,10 @@
 namespace chronormal::bench {
 namespace {
 
-// A function is called to fill the caches before it is timed: kWarmCalls times if a call takes at most kShort seconds,
-// because data that barely exceed a cache reach a steady state only after several passes; once if a call takes at most
-// kSlow seconds; otherwise not at all. If a call takes more than kVerySlow seconds, the first rough timing counts as a
-// result, and only one more call follows.
+// Before a function is timed, calls of the function fill the caches: kWarmCalls calls if a call takes at most kShort
+// seconds, and one call if a call takes at most kSlow seconds. (Data that barely exceed a cache reach a steady state
+// only after several passes.) If a call takes more than kVerySlow seconds, the first rough timing counts as a result,
+// and only one more call follows.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 

@@ -83,10 +83,10 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 // interval of time, and are valid at every instant of it.
 //
 // Engines cull meshlets that show no face from the front. meshopt_computeMeshletBounds() computes the bounds for this
-// test for a mesh at rest. For a moving mesh, the sphere must contain every vertex on its whole path, the cone every
-// normal, and the apex must stay behind the plane of every face: n(t).(p(t) - apex) >= 0, a cubic in t that is decided
-// by its Bernstein coefficients. With these bounds, none of the tests of meshoptimizer.h rejects a cluster with a face
-// that is front-facing from the camera at any instant of [t0, t1]:
+// test for a mesh at rest. For a moving mesh, the sphere must contain every vertex on its whole path, and the cone must
+// contain every normal. The apex must stay behind the plane of every face: n(t).(p(t) - apex) >= 0, a cubic in t that
+// is decided by its Bernstein coefficients. With these bounds, none of the tests of meshoptimizer.h rejects a cluster
+// with a face that is front-facing from the camera at any instant of [t0, t1]:
 //
 //     dot(view, cone_axis) >= cone_cutoff                                                      orthographic
 //     dot(normalize(cone_apex - camera), cone_axis) >= cone_cutoff                             perspective
@@ -122,9 +122,9 @@ struct ClusterBounds {
 // Averages normals over an open shutter: the mean of n(t), and the mean of the unit normal n(t) / |n(t)|, over an
 // interval of time.
 //
-// A renderer with motion blur averages all instants of [t0, t1]. If it stores one normal for a pixel, or shades the
-// pixel only once, this normal should be the mean of the unit normal, and not the normal at the middle of the interval
-// or halfway between the end normals:
+// A renderer with motion blur averages all instants of [t0, t1]. If the renderer stores one normal for a pixel, or
+// shades the pixel only once, this normal should be the mean of the unit normal. The normal at the middle of the
+// interval, or halfway between the end normals, is another vector:
 //
 //     mean        1 / (t1 - t0) integral of n(t) dt             exactly a third of the sum of the three control
 //                                                               normals of [t0, t1]

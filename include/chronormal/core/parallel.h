@@ -48,9 +48,9 @@ class Interruption {
 /// Interruption.
 void check_interruption();
 
-/// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
-/// done. The first exception that body throws is thrown again by parallel_for(). All threads use this thread's rounding
-/// mode.
+/// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all calls
+/// are done. The first exception that body throws is thrown again by parallel_for(). All threads use this thread's
+/// rounding mode.
 ///
 /// Threads    the threads of one pool, which are created when first needed; if the system grants fewer threads, the
 ///            loop uses those that it gets. A body may call parallel_for, whose loop shares the threads of the outer

@@ -300,10 +300,9 @@ struct BlendSet {
 /// kInvalidInput for a delta beyond the range of float32.
 [[nodiscard]] Result<BlendSet> blend_set_of(const Motion& star);
 
-/// Checks the properties on which the rest of the library relies: there are as many positions as the topology has
-/// vertices, and all are finite; each target lists existing vertices in ascending order, with one finite delta for
-/// each.
-/// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
+/// Checks the properties on which the rest of the library relies. There must be as many positions as the topology has
+/// vertices, and all must be finite. Each target must list existing vertices in ascending order, with one finite delta
+/// for each vertex. Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 
 /// Checks a target that is to become target k of a set with this topology. Errors: those of validate() for a set.

@@ -101,10 +101,10 @@ struct CubicSegment {
 /// keys ascend in time and have equally many positions; i + 1 < keys.size().
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
-/// Measures the bend of the paths through every `every`-th keyframe of a sequence: the second differences of vertices
-/// over three successive keyframes, divided by the distances that the vertices move, both summed over all vertices and
-/// keyframes. A rigid turn by an angle a from keyframe to keyframe has a bend of sin(a / 2). Three keyframes are held
-/// at a time. Errors: those of the stream.
+/// Measures the bend of the paths through every `every`-th keyframe of a sequence. The bend is the sum of the second
+/// differences of vertices over three successive keyframes, divided by the sum of the distances that the vertices move,
+/// over all vertices and keyframes. A rigid turn by an angle a from keyframe to keyframe has a bend of sin(a / 2).
+/// Three keyframes are held at a time. Errors: those of the stream.
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
 /// The bend, as bend_of() measures it, above which a curve through the keyframes says little about the real motion.
 inline constexpr double kTooSparse = 0.5;

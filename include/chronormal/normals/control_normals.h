@@ -5,8 +5,8 @@
 /// is a quadratic in each component. It is stored in Bernstein form,
 ///     n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1                                  (eq. 5)
 /// by three control normals: n0 and n1 are the normals at the ends, and m is the middle control point, which is not the
-/// normal in the middle. |n(t)| is twice the area of the face, so sums of n(t) are area-weighted; the vector area of a
-/// polygon, planar or not, is such a sum over a fan of its triangles, and a quadratic too.
+/// normal in the middle. |n(t)| is twice the area of the face, so sums of n(t) are area-weighted. The vector area of a
+/// polygon, planar or not, is half of such a sum over a fan of its triangles, and therefore a quadratic, too.
 ///
 /// Units      positions: any length L; control normals: L^2; t: fraction of the segment, [0, 1].
 /// Time       Here, and in all functions for unit normals of a segment: t outside [0, 1] is moved to the nearer end, t

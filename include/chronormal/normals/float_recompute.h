@@ -18,8 +18,9 @@
 ///            without a face, for edges below 1e-10 or above 1e9, and for infinities and NaN among the positions.
 /// Order      The cross products of an element are added from neighbour to neighbour, and polygons as fans from the
 ///            element's own corner, in an order that follows from the topology and the groups.
-/// Memory     4 bytes for each corner and 8 or more for each element of groups, for paths around vertices in slices of
-///            sixteen, each as long as its longest path; 16 bytes for each vertex, for its interpolated position.
+/// Memory     4 bytes for each corner and 8 or more for each element of groups, for the paths around vertices, which
+///            are stored in slices of sixteen paths, each slice as long as its longest path; 16 bytes for each vertex,
+///            for its interpolated position.
 /// Ownership  the topology must outlive the object; groups are only read when it is made.
 /// Threads    unit_normals() uses the scratch of the object, so only one call may run at a time. With one thread it
 ///            does not allocate or throw. Results have the same bits on every instruction set, compiler and number of

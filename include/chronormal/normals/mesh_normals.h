@@ -62,7 +62,7 @@ struct MeshNormalsOptions {
   /// computed from blended positions.
   std::size_t most_blend_bytes = std::size_t{1} << 30;
   /// True to use float32 if all positions of blend shapes are blended, like FloatRecompute. Float32 takes about half as
-  /// long, but guarantees no accuracy of the normals: a position has an error of a unit in the last place, which turns
+  /// long, but guarantees no accuracy of the normals. A position has an error of a unit in the last place, which turns
   /// a normal by the ratio of that unit to the length of an edge. The accuracy is enough for shading. The option has no
   /// effect if some normal belongs to a ring of more than 64 points.
   bool blends_in_float32 = false;

@@ -109,11 +109,11 @@ class NormalCurves {
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
   /// Prepares the curves of all faces of a segment, or of all elements of groups, directly from positions, without an
-  /// array of control normals in between. (Meshes in random order need 32 more bytes per vertex during the call.) The
-  /// first curves for some groups also compute the paths around elements, 33 bytes per vertex of a grid, which the
-  /// groups keep for later curves. If many segments are prepared one after the other, pass the previous curves as
-  /// `reuse`: they are emptied and their memory is reused, which avoids requests for new pages; the 32 bytes per vertex
-  /// are then kept for the next curves.
+  /// array of control normals in between. Meshes in random order need 32 more bytes per vertex during the call. The
+  /// first curves for some groups also compute the paths around elements, which take 33 bytes per vertex of a grid, and
+  /// which the groups keep for later curves. If many segments are prepared one after the other, pass the previous
+  /// curves as `reuse`. The call empties these curves and reuses their memory, which avoids requests for new pages. The
+  /// 32 bytes per vertex are then kept for the next curves.
   ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
   [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
                                              Threads threads = Threads::kOne, NormalCurves* reuse = nullptr);

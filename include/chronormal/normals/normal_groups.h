@@ -1,8 +1,8 @@
 /// Finds the corners of faces that share a normal, and computes the control normals of such groups of corners.
 ///
-/// The normal of a vertex is a sum over the faces around it; the normal of a corner is a sum over those faces around its
-/// vertex that smooth edges connect to its own face. Either rule divides the corners into *elements*, each with one
-/// normal. Two triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
+/// The normal of a vertex is a sum over the faces around the vertex. The normal of a corner is a sum over those faces
+/// around its vertex that smooth edges connect to its own face. Either rule divides the corners into *elements*, each
+/// with one normal. Two triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
 ///     corner    0  1  2  3  4  5            of face 0, and of face 1
 ///     vertex    0  1  2  2  1  3
@@ -20,7 +20,8 @@
 ///     point_of_vertex   0  1  2  1  3
 ///
 /// Two sides  If all faces at a point are back to back, the corners of the two sides do not share a normal, since the
-///            two normals are opposite. (If one normal is for both sides, because they share a vertex, the sum is zero.)
+///            two normals are opposite. (If one normal is for both sides, because they share a vertex, the sum is
+///            zero.)
 /// Sums       The length of a face normal is twice the area of the face, so the area-weighted normal of an element is
 ///            the plain sum of the n(t) of its faces: a sum of quadratics, hence a quadratic, exact at every t. The
 ///            control normals are added once; afterwards vertices and corners are elements like faces, for NormalCurves
@@ -99,9 +100,10 @@ class NormalGroups {
 
   /// Makes elements by a crease angle; outputs are corners. Two corners of a point share a normal if their faces have a
   /// common edge at this point, and the angle between the two face normals in keyframe 0 is at most the crease angle
-  /// (plus 1e-6 rad, for the rounding of positions); or if both share a normal with a third corner. So smoothness
-  /// spreads from edge to edge around a point, even if angles add up, and stops at boundaries: two fans that only touch
-  /// in a point stay separate. Edges are between points, in either direction. More exactly:
+  /// (plus 1e-6 rad, for the rounding of positions). Two corners also share a normal if both share a normal with a
+  /// third corner. So smoothness spreads from edge to edge around a point, even if angles add up, and stops at
+  /// boundaries: two fans that only touch in a point stay separate. Edges are between points, in either direction. More
+  /// exactly:
   ///   * two faces with opposite windings have an angle near 180 degrees, so their edge is hard;
   ///   * an edge of 3 to 16 faces is smooth between those pairs of faces whose angle is small enough; an edge of more
   ///     faces is hard;

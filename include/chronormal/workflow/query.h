@@ -115,8 +115,9 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Finds the points that are inside a closed mesh at the first instant of the span, and the time, place and direction
 /// of all crossings of the surface (analysis/containment.h). A point moves on a straight line at constant speed from
-/// the first to the last time of the motion, independent of the span; at keyframes its position is rounded to float32,
-/// like those of vertices. Vertices that coincide in all keyframes are one point (normals/normal_groups.h). Tables:
+/// the first to the last time of the motion, independent of the span. At keyframes the positions of points are rounded
+/// to float32, like those of vertices. Vertices that coincide in all keyframes are one point (normals/normal_groups.h).
+/// Tables:
 ///     ""         inside: one row for each point
 ///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; for targets, by
 ///                point, segment and weight
