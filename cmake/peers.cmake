@@ -1,7 +1,7 @@
 # Finds the libraries with which the benchmarks compare chronormal. ./run bench installs and uses these libraries.
 find_package(OpenMesh QUIET)
 find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
-# CGAL complains about build types that are not Release. This setting silences it.
+# CGAL complains about build types other than Release, unless this setting is on.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL QUIET)
 if(NOT TARGET OpenMeshCore OR NOT VTK_FOUND OR NOT CGAL_FOUND)

@@ -40,7 +40,7 @@ class Expansion;  // limits the memory and the output that reading a file may ca
 // The mark of a bake in a glTF file: the encoding of the normals, and the formulas of correction targets
 // (docs/formats.md).
 //
-// Threads    plain values
+// Threads    these are plain values.
 
 /// A correction target, which a bake has added to a mesh. It moves no vertex. Its weight follows from the weights of
 /// the targets that the mesh had before, which are called its own (docs/formats.md):

@@ -292,7 +292,7 @@ struct AuditLimits {
 /// kept errors of more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Audits a motion that is not from a glTF file. A sequence is one subject; of targets over a base, each is a subject.
+/// Audits a motion that is not from a glTF file. A sequence is one subject; each target over a base is a subject.
 /// If there are no stored normals, a viewer computes area-weighted normals at keyframes and interpolates between them;
 /// the audit compares these normals with the true ones. Residuals of positions are used in all computations but one:
 /// the weighting of stored normals is detected from the rounded positions, because a tenth of a degree can decide which
