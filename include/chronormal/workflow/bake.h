@@ -151,8 +151,7 @@ struct BakedCandidate {
   /// poses of the options, to which nothing was fitted. Samples count if n(w) is longer than a thousandth of n(0).
   /// Normals are transformed by the skins of the nodes with the mesh.
   ShownErrors played;
-  /// The errors of each named viewer. Empty if "as it is" was the only candidate. Also empty for the different numbers
-  /// of targets of "quadratics" that were tried for all vertices at once.
+  /// The errors in each viewer before the bake and with this candidate: the named viewers first, then the others.
   std::vector<ViewerChange> viewers;
   bool within = false;  ///< true if the worst error is within the tolerance, and the size within the limits
   bool chosen = false;
