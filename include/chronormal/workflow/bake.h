@@ -210,7 +210,7 @@ struct BakedMesh {
   /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
   /// normals.
   bool already_baked = false;
-  std::vector<ViewerChange> viewers;       ///< the errors of each named viewer if the mesh changed; empty for kExact
+  std::vector<ViewerChange> viewers;       ///< errors in each viewer, named ones first; empty for kExact
   std::vector<BakedCandidate> candidates;  ///< the candidates that kSmallest has evaluated
   /// The number of correction targets that were left out, because viewers do not support so many targets.
   std::size_t left_out = 0;
