@@ -47,7 +47,7 @@ export function makePlot(parent, onGo) {
       scales: { x: { time: false }, y: { range: (_, least, most) => [0, most > 0 ? most * 1.08 : 1] } },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${+x.toFixed(3)}${unit}`) },
              { ...axis, size: 46, space: 22, values: (_, ticks) => ticks.map((y) => `${+y.toFixed(3)}°`) }],
-      series: [{}, series('worst', '--worst', 2), series('mean', '--mean', 2)],
+      series: [{}, series('worst', '--worst', 2), series('average', '--mean', 2)],
       plugins: [line],
     };
     const finite = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
