@@ -21,8 +21,8 @@ constexpr std::size_t kNameColumn = 2, kTextColumn = 27;
 constexpr std::string_view kAbout = "Computes, checks and corrects normals of triangle meshes that deform.";
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kOptionsOfProgram = {
-    {{"-h, --help", "explain the program, or the command before --help"},
-     {"--help-all", "explain all options of the command before --help-all"},
+    {{"-h, --help", "explain the program, or a command: chronormal bake --help"},
+     {"--help-all", "explain all options of a command"},
      {"-V, --version", "print the version"}}};
 
 struct Paragraph {

@@ -27,7 +27,7 @@ const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {
   name: TEXT,
-  resources: [(value) => isObject(value) && Object.values(value).every(isBytes), 'an object that maps names of files to bytes, such as a Uint8Array'],
+  resources: [(value) => isObject(value) && Object.values(value).every(isBytes), 'an object whose keys are names of files and whose values are their bytes (ArrayBuffer or Uint8Array)'],
   signal: [(value) => isObject(value) && typeof value.throwIfAborted === 'function', 'an AbortSignal'],
   onProgress: [(value) => typeof value === 'function', 'a function'],
   worker: FLAG,

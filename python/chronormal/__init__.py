@@ -353,6 +353,11 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
     """Compare ways to interpolate normals with the exact normals; return the dict of `chronormal compare --json`.
 
     schemes    names of schemes; empty: the default schemes of `chronormal compare`
+    samples    moments in each segment at which normals are compared, at least 2
+    access     "random": each normal is computed from t alone; "sequential": each from the one before, as in playback
+    elements   whose normals are compared: "faces", "vertices" or "corners"
+    crease     degrees: an edge whose faces differ by more is hard, so that its corners share no normal
+    weld       True: vertices at the same positions share a normal
     times      True: include measured times, which differ from run to run
     certify    True: bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme whose error never exceeds the tolerance

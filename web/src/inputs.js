@@ -57,4 +57,4 @@ export function faultOf(name, size, bytes) {
 
 export const NOTHING_MOVES =
   'This file needs no correction, since it has no shape keys (morph targets) that move a mesh with normals. Motion by bones alone needs no new ' +
-  'normals. If the model should have shape keys, check “Shape Keys” of the mesh in Blender, and tick “Shape Keys” below “Data” when you export glTF.';
+  'normals. If the model should have shape keys, make sure that the mesh has shape keys in Blender, and tick “Shape Keys” below “Data” when you export glTF.';

@@ -131,7 +131,8 @@ std::string original_words(const Audited& input) {
   if (any_harmless && any_driven)
     return baked +
            "for smaller errors, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
-  if (any_harmless) return baked + "nothing better is possible for targets that no animation moves";
+  if (any_harmless)
+    return baked + "errors of targets that no animation moves remain, since only animations drive correction targets";
   if (!all_single && all_fitted)
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
@@ -140,7 +141,7 @@ std::string original_words(const Audited& input) {
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
-  return baked + "nothing better is possible for targets that no animation moves";
+  return baked + "errors of targets that no animation moves remain, since only animations drive correction targets";
 }
 
 }  // namespace

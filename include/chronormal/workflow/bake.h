@@ -272,11 +272,12 @@ struct SequenceBake {
 };
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped
-/// weights. The encoding exact adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15). The
-/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) for as many
-/// segments as viewers support, and a LINEAR track (section 16). The encoding keys is like harmless, but without
-/// additional targets; it chooses its keys itself, and requires the weighting by area. Vertices at hard edges (crease
-/// angle) are doubled. `glb` gets the bytes of the file, or does not change if there is an error. The file holds
+/// weights. The encodings differ:
+///     exact      adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15)
+///     harmless   has unit normals in all targets, more targets with the weight 4 t (1 - t) for as many segments as
+///                viewers support, and a LINEAR track (section 16)
+///     keys       is like harmless without the additional targets, chooses its keys itself, and requires weights by area
+/// Vertices at hard edges (crease angle) are doubled. `glb` gets the bytes of the file, or does not change if there is an error. The file holds
 /// float32 positions, and its normals are exact for these positions; residuals of a computed motion are left out.
 /// Polygons become fans of triangles with the normals of the polygons; if a fan does not cover its polygon in keyframe
 /// 0, there is a warning. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage if the encoding keys is used

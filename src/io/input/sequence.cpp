@@ -246,8 +246,9 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
       const bool has_velocities = !motion.keyframes[0].velocities.empty();
       if (frame.velocities.empty() == has_velocities)
         return invalid_input(place(motion.keyframes.size()),
-                             has_velocities ? "the file has no velocities, but " + place(0) + " has"
-                                            : "the file has velocities, but " + place(0) + " has none");
+                             (has_velocities ? "the file has no velocities, but " + place(0) + " has"
+                                             : "the file has velocities, but " + place(0) + " has none") +
+                                 "; all files of a sequence must have velocities, or none");
       keep(std::move(frame.positions).value(), std::move(frame.velocities), std::move(frame.residuals));
     }
   }

@@ -70,11 +70,12 @@ class SharedFaces {
     return normals_.of(topology, face, [&] { return polygon_control_normals(segment_, topology.face(face)); });
   }
 
-  /// Return the exact curve of one face, and the sum of the exact curves of several faces.
+  /// Returns the exact curve of one face.
   [[nodiscard]] ExactCurve exact(std::uint32_t face) const noexcept {
     const Topology& topology = *segment_.topology;
     return curves_.of(topology, face, [&] { return ExactCurve::of_polygon(segment_, topology.face(face)); });
   }
+  /// Returns the sum of the exact curves of several faces.
   [[nodiscard]] ExactCurve exact_sum(std::span<const std::uint32_t> faces) const noexcept {
     const auto is_large = [this](std::uint32_t f) { return curves_.are_kept_of(*segment_.topology, f); };
     if (std::none_of(faces.begin(), faces.end(), is_large)) return ExactCurve::of_faces(segment_, faces);

@@ -286,7 +286,7 @@ Status check(const BlendCompareOptions& options) {
   if (options.rows < 1 || options.rows > kMostBlendRows)
     return misuse("", "the number of poses must be from 1 to 10,000");
   if (options.active > 0 && !options.animation.empty())
-    return misuse("", "the number of active targets cannot be chosen for an animation");
+    return misuse("", "the number of active targets cannot be chosen for an animation; leave one of the two out");
   return Success{};
 }
 

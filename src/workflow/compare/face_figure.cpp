@@ -12,6 +12,7 @@
 #include "chronormal/core/views.h"
 #include "chronormal/workflow/compare.h"
 #include "core/charconv.h"
+#include "core/text.h"
 #include "motion/segment_end.h"
 #include "schemes/arc.h"
 #include "schemes/frames.h"
@@ -147,11 +148,11 @@ SchemeFigure figure_of(const std::string& name, const ElementBlock& block, const
 Result<FaceFigure> face_figure(const Motion& motion, const FaceFigureOptions& options) {
   const auto misused = [](std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; };
   if (options.segment >= motion.segments.size())
-    return misused("there is no segment " + std::to_string(options.segment) +
-                   "; segments are counted from 0, and their number is " + std::to_string(motion.segments.size()));
+    return misused("there is no segment " + std::to_string(options.segment) + "; the motion has " +
+                   counted(motion.segments.size(), "segment", "segments") + ", counted from 0");
   if (options.face >= motion.topology.face_count())
-    return misused("there is no face " + std::to_string(options.face) +
-                   "; faces are counted from 0, and their number is " + std::to_string(motion.topology.face_count()));
+    return misused("there is no face " + std::to_string(options.face) + "; the mesh has " +
+                   counted(motion.topology.face_count(), "face", "faces") + ", counted from 0");
   if (options.samples < 2) return misused("the number of samples must be at least 2");
   const std::vector<std::string> names = options.schemes.empty() ? default_schemes() : options.schemes;
   for (const std::string& name : names) {

@@ -251,7 +251,8 @@ TEST(ReadSequence, velocities_are_kept_where_they_are_asked_for_and_every_frame_
   for (const bool stream : {false, true}) {
     EXPECT_EQ(open(files, stream).value(), (std::vector<float>{1, 2, 2, 1, 2, 2, 1, 2, 2}));
     EXPECT_EQ(error_of(open({files[0], files[1], other}, stream)).text(),
-              "frame 2 (9.ply): the file has no velocities, but frame 0 (0.ply) has");
+              "frame 2 (9.ply): the file has no velocities, but frame 0 (0.ply) has; all files of a sequence must have "
+              "velocities, or none");
     const Error late = error_of(open({other, files[1]}, stream));
     EXPECT_EQ(late.place, "frame 1 (1.ply)");
     EXPECT_EQ(late.message.find("the file has velocities, but frame 0"), 0U) << late.message;

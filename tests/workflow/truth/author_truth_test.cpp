@@ -584,7 +584,8 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
   for (const bool is_noise : {false, true}) {
     Authored mesh = quads(random);
     const std::vector<Vector> base = mesh.sums("angle", {0, 0});
-    std::vector<Vector> second = base;  // differs slightly from the base, so that an exporter keeps the target
+    // Without noise, the normals differ from the base only so much that an exporter keeps the target.
+    std::vector<Vector> second = base;
     for (Vector& n : second) n = bent(n, random, is_noise ? 0.6 : 1e-3);
     mesh.store(base, {mesh.sums("angle", {1, 0}), second});
     const Truth truth(mesh.file);

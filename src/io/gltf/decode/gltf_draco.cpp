@@ -59,7 +59,8 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   const std::size_t available = attribute->buffer()->data_size();
   result.resize(std::size_t{mesh.num_points()} * components);
   for (std::uint32_t v = 0; v < mesh.num_points(); ++v) {
-    const std::uint64_t value = attribute->mapped_index(draco::PointIndex(v)).value();  // the index has 32 bits
+    // The index has 32 bits, so its product with a stride of at most the size of the buffer cannot overflow.
+    const std::uint64_t value = attribute->mapped_index(draco::PointIndex(v)).value();
     bool ok = stride <= available && offset <= available && value * stride + components * size <= available - offset;
     const char* const at =
         reinterpret_cast<const char*>(attribute->buffer()->data()) + (ok ? offset + value * stride : 0);

@@ -60,7 +60,7 @@ void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of rows of indices by which points are prefetched in advance.
+// Points are prefetched this many rows of indices before they are used.
 constexpr std::size_t kRowsAhead = 24;
 
 HWY_INLINE void StoreColumns(const Lanes3& v, float (*to)[kTile], std::size_t lane) {

@@ -28,8 +28,8 @@ struct MeshPlan {
   FittedLines lines;                ///< deltas of targets that are active together, for the encoding endpoint
   std::vector<ExtraWeight> extras;  ///< the correction targets, in ascending order of (i, j)
   std::vector<bool> is_shown;       ///< for each element, true if some vertex shows it
-  std::vector<double> largest;      ///< for each element, the length of its largest term
-  double left_out = 0;              ///< degrees: the largest angle by which a normal turns because pairs were left out
+  std::vector<double> largest;  ///< for each element, the length of the longest vector in the sum that is its normal
+  double left_out = 0;          ///< degrees: the largest angle by which a normal turns because pairs were left out
 };
 
 /// Returns the requested encoding, or kSmallest if none was requested.
