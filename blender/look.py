@@ -21,8 +21,8 @@ from . import baked, colours, program, settings, shown, truth
 # The largest numbers of frames and of pairs of keys that are checked.
 MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
-# The smallest distance between two vertices in the panel's list, as a share of the object's size. Two listed frames are
-# at least this share of all frames apart.
+# The smallest distance between two vertices in the panel's list, as a share of the object's size, and between two
+# frames in the list, as a share of the number of judged frames.
 APART = 0.1
 # Poses and vertices whose error is below this number of degrees are not in the panel's list.
 VISIBLE = 0.1

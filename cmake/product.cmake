@@ -1,9 +1,10 @@
 # Adds the targets of the product: libraries and the program. The function chronormal_add_product() defines these
 # targets. The targets are built once for users and, if tests are built, once more with sanitizers for the tests.
 #
-# chronormal       core, simd, motion, normals, schemes, analysis chronormal_io    io and workflow
-# (CHRONORMAL_IO) chronormal_c     a shared library with the functions of chronormal_c.h for C   (CHRONORMAL_C)
-# chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
+#   chronormal       core, simd, motion, normals, schemes, analysis
+#   chronormal_io    io and workflow                                      (CHRONORMAL_IO)
+#   chronormal_c     a shared library with the functions of chronormal_c.h for C   (CHRONORMAL_C)
+#   chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
 if(EMSCRIPTEN)
   include(cmake/wasm.cmake)
 elseif(CHRONORMAL_STATIC)

@@ -124,7 +124,7 @@ struct ClusterBounds {
 //
 // A renderer with motion blur averages all instants of [t0, t1]. If the renderer stores one normal for a pixel, or
 // shades the pixel only once, this normal should be the mean of the unit normal. The normal at the middle of the
-// interval, or halfway between the end normals, is another vector:
+// interval, or halfway between the end normals, is another vector in general. The two means are
 //
 //     mean        1 / (t1 - t0) integral of n(t) dt             exactly a third of the sum of the three control
 //                                                               normals of [t0, t1]

@@ -15,8 +15,8 @@
 ///     sequences  at each keyframe a rotation towards its stored normal, but by at most the angle of keyframe 0: growth
 ///                of the offset is an error. Between two keyframes the two rotations are blended.
 ///
-/// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
-///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as in the file.
+/// Samples    t = i / (samples - 1) of each segment: a target alone (AuditOptions::weights), or the time between two
+///            keys of an animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as in the file.
 ///            Expressions of an avatar, poses in which a file opens, and requested poses have one sample each.
 /// Judged     samples of vertices with a face that moves, or with a stored normal that changes.
 /// Unlit      a rendered normal that is zero, infinite or NaN cannot be lit: such a sample has the largest possible
@@ -111,8 +111,8 @@ struct AuditOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// The motion that is judged: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
-/// expression, or the weights with which a file opens. Requested poses are the samples of a single subject.
+/// The motion that is judged: a target alone (AuditOptions::weights), the weight track of a node, a sequence, an
+/// avatar's expression, or the weights with which a file opens. Requested poses are the samples of a single subject.
 struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 

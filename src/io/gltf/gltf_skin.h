@@ -1,8 +1,8 @@
 /// Reads skins of glTF files: the transforms of their joints at any time, and the joints of each vertex. Private to io
 /// and workflow.
 ///
-///     joint matrix the transform of the joint in the world, after the inverse bind matrix of the skin. The matrix maps
-///                     a vertex of the mesh that follows only this joint to its position (section 3.7.3.3 of the
+///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. The matrix
+///                     maps a vertex of the mesh that follows only this joint to its position (section 3.7.3.3 of the
 ///                     specification). The transform of the node with the skin does not matter.
 ///
 /// Opening a document does not check its skins, so that callers that do not need skins can read a file with an invalid

@@ -1,6 +1,6 @@
-// Keeps a list of the names of all temporary files that exist. A name is taken out of the list either by its
-// TemporaryFile, when it is done with the file, or by remove_temporaries(). From then on, only the function that took
-// the name may use it. remove_temporaries() never puts a name back.
+// Keeps a list of the names of the files that remove_temporaries() removes. A name is taken out of the list either by
+// its TemporaryFile, when it is done with the file, or by remove_temporaries(). From then on, only the function that
+// took the name may use it. remove_temporaries() never puts a name back.
 #include "io/system/temporary_file.h"
 
 #include <array>

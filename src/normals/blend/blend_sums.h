@@ -51,8 +51,8 @@ class ProductSum {
  public:
   /// Adds B(p, q) of a face (blend_terms.h), for vectors p and q at its corners: over its fan, the edges of p from the
   /// first corner times the edges of q. The errors of the edges and of both products in a component come to at most 10
-  /// u times the absolute products, where u = 2^-53. Each triangle adds a rounding. Four more roundings are counted,
-  /// because value() sets components to zero that may be only rounding error.
+  /// u times the absolute products, where u = 2^-53. Each triangle adds a rounding. Four more roundings for each
+  /// triangle are counted, because value() sets components to zero that may be only rounding error.
   void add(const CornerVectors& p, const CornerVectors& q) {
     struct Edge {
       Vec3d p, q;
@@ -74,7 +74,7 @@ class ProductSum {
 };
 
 /// A sum over the faces around an element, and a bound of its error. Each face adds one rounding to the error. Four
-/// more roundings are counted, because value() sets components to zero that may be only rounding error.
+/// more roundings for each face are counted, because value() sets components to zero that may be only rounding error.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {

@@ -1,6 +1,5 @@
 // Audits glTF files. For each mesh, the audit measures the angles between the author's normals and the geometry. The
-// audit then measures the errors of each target from weight 0 to 1, of each track of weights, and of each expression of
-// an avatar.
+// audit then measures the errors of each target alone, of each track of weights, and of each expression of an avatar.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -248,8 +247,8 @@ void add_subject(Measured measured, Audit& result) {
   result.subjects.push_back(std::move(measured.subject));
 }
 
-// Audits target k alone, from weight 0 to 1. Correction targets that a bake has added get the weights that follow from
-// the weight of target k.
+// Audits target k alone, from the lowest to the highest of the weights that the options give. Correction targets that a
+// bake has added get the weights that follow from the weight of target k.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   Involved involved = {k};

@@ -169,8 +169,8 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that nothing uses after the changes, in the buffers for which holds(buffer) is true. The bytes of
-// such buffers are in the result.
+// Finds the arrays that the source uses and the edited document does not, in the buffers for which holds(buffer) is
+// true. The bytes of such buffers are in the result.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};

@@ -25,7 +25,7 @@ namespace chronormal::inline internal::gltf {
 
 /// A store of new arrays, in which arrays of one kind share a buffer view. The kinds are vectors, scalars, and the
 /// indices and values of sparse accessors. Only the view of vectors has a target, ARRAY_BUFFER (section 3.6.2.4 of the
-/// specification).
+/// specification). The view of sparse accessors must not have a target.
 class NewArrays {
  public:
   /// Creates an empty store that keeps the bytes of its arrays in `spool`.
