@@ -175,7 +175,7 @@ TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_
 
 TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
   // The program must not be ended by signals that its shell ignores: SIGINT in a background job, and SIGHUP if `trap`
-  // says so, as the command nohup does.
+  // says so. The command nohup ignores SIGHUP too.
   const ProcessResult result =
       run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
           "trap '' HUP; ");

@@ -3,7 +3,6 @@
 // ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  tests all viewers and rules, and not only the normals of Filament and PlayCanvas
-
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

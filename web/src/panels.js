@@ -53,7 +53,7 @@ export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees 
 export function worstPlaces(report, onVisit) {
   const places = shownPlaces(report);
   if (places.length === 0) return null;
-  // Leaves out the words with which the labels of all places begin.
+  // Leaves out the words with which the labels of all places begin alike.
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const item = ({ part, motion, sample, degrees, label }, i) => {

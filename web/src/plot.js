@@ -4,8 +4,8 @@ import { degreesText } from './colors.js';
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// uPlot allows no two points at the same x. A motion, however, has two samples at a keyframe, one for each side of the
-// keyframe. The second sample is therefore moved slightly.
+// uPlot allows no two points at the same x. A motion, however, has two samples at a keyframe or at a key of a track,
+// one for each side. The second sample is therefore moved slightly.
 const spread = (at) => {
   const x = Float64Array.from(at), gap = (x[x.length - 1] - x[0] || 1) * 1e-9;
   for (let i = 1; i < x.length; ++i) if (x[i] <= x[i - 1]) x[i] = x[i - 1] + gap;

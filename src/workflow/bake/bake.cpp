@@ -45,8 +45,8 @@ struct MeshBake {
   GrownMesh grown;  // set if the mesh has correction targets
 };
 
-// Lists the meshes with a target that has positions or normals. The arrays of these meshes, which are read later, tell
-// which of them really move.
+// Lists the meshes that may move: those in which some primitive with faces has a target with positions, or has normals
+// and a target with normals. The arrays of these meshes, which are read later, tell which of them really move.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {

@@ -291,8 +291,8 @@ Status check(const BlendCompareOptions& options) {
 }
 
 // Lists the numbers of targets that are active at the same time. Schemes are compared separately for each number. If
-// `wanted` is not 0, the list has only this number. Otherwise the list has the numbers in kActive that are below the
-// number of targets, and then the number of targets.
+// `wanted` is not 0, the list has only this number, or the number of targets if it is smaller. Otherwise the list has
+// the numbers in kActive that are below the number of targets, and then the number of targets.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;

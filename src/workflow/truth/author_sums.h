@@ -3,8 +3,8 @@
 /// An authoring tool adds up the normals of *polygons* around a vertex, and weights them in its own way. A glTF file
 /// has triangles, in the order in which the polygons were cut:
 ///
-///     quad         (a, b, c), (a, c, d)     consecutive; corners 0 and 2 of the first are corners 0 and 1 of the
-///                  second
+///     quad         (a, b, c), (a, c, d)     consecutive; corners 0 and 2 of the first triangle are corners
+///                                           0 and 1 of the second
 ///     larger       any number of consecutive triangles, in whatever order, that fill an outline with no vertex inside
 ///
 /// Only pairs in this order become quads, because two triangles that share any other edge are often halves of two

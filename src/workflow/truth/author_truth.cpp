@@ -217,8 +217,9 @@ class AuthorTruth::Finder {
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // for each frame, its element
   std::vector<PlaneOffset> base_offsets_;  // for each edge, the base's offset with the azimuth measured from it
-  // Holds for each edge a sum over all targets at weight 1: the squared distance between the offset in the target and
-  // the offset in the base, with azimuths measured from this edge. Holds -1 if the edge cannot be used.
+  // Holds for each edge a sum over the targets at weight 1 for which tells() is true: the squared distance between the
+  // offset in the target and the offset in the base, with azimuths measured from this edge. Holds -1 if the edge cannot
+  // be used.
   std::vector<double> differences_;
 };
 

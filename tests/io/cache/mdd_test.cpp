@@ -49,7 +49,7 @@ TEST(ReadMdd, errors_say_where_and_what) {
   EXPECT_EQ(
       error_of(test::small_mdd(0, 1) + "xxxx"),
       "walk.mdd, byte 8: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");
-  // The reader finds the positions even if it has only the start of a file, if the start includes all times.
+  // To find the positions, the reader needs only the start of a file, up to the last time.
   const auto layout = [](std::size_t count) {
     const std::string bytes = test::small_mdd(0, 1);
     return find_mdd_layout(std::string_view(bytes).substr(0, count), bytes.size(), "walk.mdd", {});

@@ -58,8 +58,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
 }
 
 // Returns true if an error has grown more than is allowed. The mean error may grow up to the tolerance, and each other
-// error by the tolerance. Also returns true if many more edges are torn: for each hundred edges torn before, one more
-// may be torn. The angles 10, 20 and 40 degrees count as limits of tears, but only the first `thresholds` of them.
+// error by the tolerance. Also returns true if too many more edges are torn beyond one of the angles 10, 20 and 40
+// degrees, of which only the first `thresholds` count. For each hundred edges torn before (beyond 10 degrees), one more
+// edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);

@@ -34,9 +34,9 @@ struct NewBaseNormals {
 
 /// Replaces the base normals of some parts by the normals of the geometry. A vertex for which the geometry has no
 /// normal keeps its stored normal. If the stored normal is zero, it becomes (0, 0, 1), because a file cannot say that a
-/// vertex has no normal. In other parts, normals longer than 1e10 or shorter than 1e-10 get length 1, because no viewer
-/// can square such normals in float32, nor add deltas to them. All other normals stay. is_recomputed has one entry for
-/// each part.
+/// vertex has no normal. In other parts, normals longer than 1e10 or shorter than 1e-10, except zeros, get length 1,
+/// because no viewer can square such normals in float32, nor add deltas to them. All other normals stay. is_recomputed
+/// has one entry for each part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 

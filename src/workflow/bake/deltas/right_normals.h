@@ -44,8 +44,8 @@ class RightNormals {
 
   /// Calls visit(n, first, right) for each vertex and each batch of poses. n is the index of the vertex in `vertices`,
   /// and `right` has the unit normals of this vertex in the poses from number `first` on. Calls for different n may run
-  /// at the same time, but each batch begins only when the last batch has ended. In each pose, computes the positions
-  /// of all vertices, but only the normals of the listed vertices.
+  /// at the same time, but each batch begins only when the batch before has ended. In each pose, computes the
+  /// positions of all vertices, but only the normals of the listed vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kTogether = 8, kVertices = 64;

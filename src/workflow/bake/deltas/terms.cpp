@@ -238,8 +238,8 @@ Vec3d VertexTerms::turn(const Vec3d& v) const noexcept {
 
 Vec3d VertexTerms::end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept {
   if (max_abs(base_) > 0) return length_ * turn(delta);
-  // The best single delta starts from the true direction at weight 0, but a delta in the file starts from the stored
-  // normal N.
+  // The best single delta starts from the limit of the true direction at weight 0, but a delta in the file starts from
+  // the stored normal N.
   return length_ * (unit_normal_at(normals, 0).vector + delta - stored_);
 }
 

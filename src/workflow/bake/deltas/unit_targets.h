@@ -6,8 +6,8 @@
 /// the author's targets and of correction targets is u - N with a unit vector u (docs/theory.md, section 16). Such a u
 /// "fits" if no component of u - N is beyond 1.
 ///
-/// Vectors    base and u have length 1. base may also be (0, 0, 0), and then every u fits. Threads    All functions are
-/// pure.
+/// Vectors    base and u have length 1. base may also be (0, 0, 0), and then every u fits.
+/// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
 

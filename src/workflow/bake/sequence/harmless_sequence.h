@@ -1,7 +1,7 @@
 /// Computes normals of a sequence that every viewer renders alike (docs/theory.md, section 16). Private to workflow.
 ///
 /// N is the normal of key 0. The target of each other key has the delta from N to the normal at the key, and both
-/// normals have length 1. A viewer then interpolates linearly between two unit normals. Each segment has one more
+/// normals have length 1. A viewer then interpolates linearly between two unit normals. A segment may have one more
 /// target, the bend, whose delta leads from N to another unit normal. With the weight 4 t (1 - t), the bend makes the
 /// normal right at t = 1/2 as well. Tracks are LINEAR, so this weight is played as a chain of kBendPieces straight
 /// pieces.
