@@ -322,6 +322,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (!stored.of_keyframes.empty()) {
     const std::vector<float>& first = stored.of_keyframes.front();
     how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+    how.normals_of_keyframe = [&input](std::size_t k) { return input.normals_of(k); };
   }
   how.progress = progress.callback("baking");
   const Expansion allowed = input.expansion();

@@ -427,6 +427,10 @@ std::string bake_sequence_of(Opened& input, BakeOptions options, std::string& js
     if (!stored.value()->of_keyframes.empty()) {
       const std::vector<float>& first = stored.value()->of_keyframes.front();
       options.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+      options.normals_of_keyframe = [&](std::size_t k) -> Result<std::vector<float>> {
+        const std::vector<std::vector<float>>& all = stored.value()->of_keyframes;
+        return k < all.size() ? all[k] : std::vector<float>();
+      };
     }
     const Expansion allowed = input.expansion();
     options.expansion = &allowed;

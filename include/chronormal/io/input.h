@@ -197,6 +197,10 @@ class Input {
   /// of its base, in the space of the meshes. If curves are cut, returns only the normals of keyframe 0. Errors: those
   /// of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();
+  /// Returns the normals that keyframe k of a sequence stores, three numbers per corner. Reads the file of the keyframe
+  /// again if these normals are not in memory. The result is empty if the keyframe stores none, or if vertices move on
+  /// curves. Errors: those of normals(), and of reading the file.
+  [[nodiscard]] Result<std::vector<float>> normals_of(std::size_t k);
   /// Returns the smoothing group of each face in the first keyframe (io/mesh/mesh_frame.h), or an empty span if the
   /// file has no groups.
   [[nodiscard]] std::span<const std::uint32_t> group_of_face() const noexcept;

@@ -69,6 +69,10 @@ struct BakeOptions {
   /// the crease angle, and also the weighting of the true normals if no weighting is given. The rotation from the true
   /// normals to these normals is kept. (The encoding kKeys uses them only for the hard edges.)
   VectorView<const float> normal_of_corner = {};
+  /// Reads the normals that keyframe k of a sequence stores, one for each corner, or an empty list. If this function is
+  /// given, the weighting follows from the normals of later keyframes, too: a flat keyframe 0 has the same normals by
+  /// all weightings. Errors of the function leave a keyframe out.
+  std::function<Result<std::vector<float>>(std::size_t keyframe)> normals_of_keyframe = {};
   /// True if vertices that coincide in all keyframes share a normal. Vertices at hard edges, and those on the two sides
   /// of a sheet, never do.
   bool weld = true;

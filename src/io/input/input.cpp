@@ -651,6 +651,16 @@ Result<const StoredNormals*> Input::normals() {
   return &normals;
 }
 
+Result<std::vector<float>> Input::normals_of(std::size_t k) {
+  const Result<const StoredNormals*> kept = normals();
+  if (!kept) return kept.error();
+  const std::vector<std::vector<float>>& of_keyframes = kept.value()->of_keyframes;
+  if (k < of_keyframes.size()) return of_keyframes[k];
+  const ReadMotion& read = state_->opened.read;
+  if (!read.read_normals || state_->path.is_curved()) return std::vector<float>();
+  return read.read_normals(k);
+}
+
 Result<Input> open_input(const InputOptions& asked) {
   if (const Status status = check_input(asked); !status) return status.error();
   auto state = std::make_unique<Input::State>();

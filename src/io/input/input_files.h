@@ -23,6 +23,8 @@ struct ReadMotion {
   Motion motion;
   std::optional<MotionStream> stream = {};  ///< the motion as a stream, if its keyframes are still in files
   StoredNormals normals;
+  /// Reads the normals that a keyframe stores, if keyframes are still in files that store normals.
+  std::function<Result<std::vector<float>>(std::size_t keyframe)> read_normals = {};
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;  ///< the same as in class Input
   /// The files of a sequence that are examined for coordinates with more digits than float32 holds, if the first file

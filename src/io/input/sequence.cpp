@@ -313,6 +313,16 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
     if (status) std::copy(found.begin(), found.end(), result.begin());
     return status;
   };
+  if (read.normals.has_more)
+    read.read_normals = [files, frames, options](std::size_t keyframe) -> Result<std::vector<float>> {
+      const std::string& path = files[frames[keyframe]];
+      ReadMotion alone;
+      const Result<MeshFrame> mesh =
+          read_mesh_file(options, path, frame_place(frames[keyframe], file_name_of(path)), alone);
+      if (!mesh) return mesh.error();
+      if (alone.normals.of_keyframes.empty()) return std::vector<float>();
+      return std::move(alone.normals.of_keyframes.front());
+    };
   read.stream.emplace(std::move(outline), read_one, options.kept_bytes);
   return read;
 }

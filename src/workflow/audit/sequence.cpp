@@ -314,13 +314,19 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);
   if (!normals.of_keyframes.empty()) {
-    std::vector<StoredNormal> stored;
-    for (const JudgedOutput& output : outputs_of(std::vector<bool>(topology.vertex_count(), true))) {
-      const Vec3d normal = stored_normal(normals, 0, output);
-      if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
-    }
-    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
-    const AuthoredWeighting authored = find_authored_weighting(topology, base, groups.value(), std::move(stored));
+    const std::vector<JudgedOutput> outputs = outputs_of(std::vector<bool>(topology.vertex_count(), true));
+    const auto read = [&](std::size_t k) -> std::optional<ShadedKeyframe> {
+      if (k >= normals.of_keyframes.size() || !stream.hold(k, k)) return std::nullopt;
+      std::vector<StoredNormal> stored;
+      for (const JudgedOutput& output : outputs) {
+        const Vec3d normal = stored_normal(normals, k, output);
+        if (normal != Vec3d{}) stored.push_back({output.vertex, output.element, normal});
+      }
+      const std::vector<float>& positions = motion.keyframes[k].positions;
+      return ShadedKeyframe{VectorView<const float>::packed(positions.data(), positions.size() / 3), std::move(stored)};
+    };
+    const AuthoredWeighting authored = find_authored_weighting(topology, groups.value(), motion.keyframes.size(), read);
+    if (const Status status = stream.hold(0, 0); !status) return status.error();
     result.offsets.push_back(authored_offset(authored, asked));
     weighting = result.offsets.back().weighting;
   }

@@ -135,11 +135,9 @@ double median(std::vector<float>& values) {
   return *middle;
 }
 
-}  // namespace
-
-AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
-                                          const NormalGroups& groups, std::vector<StoredNormal> stored) {
-  AuthoredWeighting result;
+// Compares stored normals with the normals of all weightings of a mesh.
+Distances distances_of(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups,
+                       std::vector<StoredNormal> stored) {
   std::sort(stored.begin(), stored.end(), [](const StoredNormal& a, const StoredNormal& b) {
     return std::pair(a.element, a.vertex) < std::pair(b.element, b.vertex);
   });
@@ -157,6 +155,11 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
     });
     for (const Distances& of_block : found) all.add(of_block);
   }
+  return all;
+}
+
+AuthoredWeighting weighting_of(Distances all) {
+  AuthoredWeighting result;
   result.distances = all.of_weightings;
   result.telling = all.telling;
   std::size_t closest = 0;
@@ -167,6 +170,31 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   const double least = result.distances[closest].of_telling;
   if (least <= kFollows && least <= kClear * result.distances[0].of_telling)
     result.detected = kWeightings[closest].weighting;
+  return result;
+}
+
+}  // namespace
+
+AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
+                                          const NormalGroups& groups, std::vector<StoredNormal> stored) {
+  return weighting_of(distances_of(topology, positions, groups, std::move(stored)));
+}
+
+AuthoredWeighting find_authored_weighting(
+    const Topology& topology, const NormalGroups& groups, std::size_t keyframes,
+    const std::function<std::optional<ShadedKeyframe>(std::size_t keyframe)>& read) {
+  constexpr std::size_t kMostLater = 4;
+  Distances all;
+  AuthoredWeighting result;
+  const std::size_t last = keyframes - 1, later = std::min(kMostLater, last);
+  for (std::size_t i = 0; i <= later; ++i) {
+    std::optional<ShadedKeyframe> keyframe = read(later == 0 ? 0 : last * i / later);
+    if (!keyframe) continue;
+    Distances found = distances_of(topology, keyframe->positions, groups, std::move(keyframe->stored));
+    if (i == 0) result = weighting_of(found);
+    all.add(found);
+  }
+  result.detected = weighting_of(std::move(all)).detected;
   return result;
 }
 

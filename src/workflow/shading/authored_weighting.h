@@ -10,6 +10,9 @@
 ///     detected   the weighting at the smallest distance, if that is at most a degree, and at most two thirds of the
 ///                distance of area; otherwise area, which can be computed exactly at every time
 ///
+/// All weightings give a flat or regular mesh the same normals, and many sequences begin with such a mesh. For this
+/// reason the normals of later keyframes are compared, too.
+///
 /// The distance is a median. For this reason normals that an author bent by hand have no influence as long as most
 /// normals are as the program computed them. Rounding to 8 bits, and quads that were cut into triangles later, change
 /// the distance little compared with the limit of two thirds, if weightings differ by more than a degree. If no
@@ -20,6 +23,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "chronormal/core/vec3.h"
@@ -64,6 +69,20 @@ struct AuthoredWeighting {
 /// normals. The result has the same bits on any number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
+
+/// The positions and the stored normals of one keyframe.
+struct ShadedKeyframe {
+  VectorView<const float> positions;
+  std::vector<StoredNormal> stored;
+};
+
+/// Compares the stored normals of a sequence with the normals of all weightings of faces. Calls read(k) for keyframe 0
+/// and for up to four later keyframes. read() returns nothing if keyframe k stores no normals; the positions that it
+/// returns must be valid until the next call. The detected weighting follows from all of these keyframes, and all other
+/// members of the result are those of keyframe 0.
+[[nodiscard]] AuthoredWeighting find_authored_weighting(
+    const Topology& topology, const NormalGroups& groups, std::size_t keyframes,
+    const std::function<std::optional<ShadedKeyframe>(std::size_t keyframe)>& read);
 
 /// Compares the base normals of a mesh with the normals of all weightings of faces. The groups of the mesh must have
 /// their corners. If the mesh has no base normals, the detected weighting is area. If there are more than `most`

@@ -47,27 +47,37 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
-// Returns the weighting that the stored normals of keyframe 0 clearly follow, for a bake whose options give no
-// weighting. Returns area if there is no such weighting, or if fits of all segments to this weighting would take too
-// much memory.
+// Returns the weighting that the stored normals clearly follow, for a bake whose options give no weighting. Returns area
+// if there is no such weighting, or if fits of all segments to this weighting would take too much memory.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
   const auto segments = static_cast<double>(motion.segments.size());
   if (options.weighting || options.normal_of_corner.count == 0 ||
-      kBytesOfFit * segments * static_cast<double>(groups.size()) > kMostBytes || !stream.hold(0, 0))
+      kBytesOfFit * segments * static_cast<double>(groups.size()) > kMostBytes)
     return Weighting::kArea;
-  std::vector<StoredNormal> stored;
-  for (std::uint32_t e = 0; e < groups.size(); ++e) {
-    if (groups.corners(e).empty()) continue;
-    const std::size_t c = groups.corners(e)[0];
-    const Vec3d normal = to_double(options.normal_of_corner[c]);
-    if (normal != Vec3d{}) stored.push_back({motion.topology.corners()[c], e, normal});
-  }
-  const std::vector<float>& base = motion.keyframes[0].positions;
-  return find_authored_weighting(motion.topology, VectorView<const float>::packed(base.data(), base.size() / 3), groups,
-                                 std::move(stored))
-      .detected;
+  std::vector<float> later;
+  const auto read = [&](std::size_t k) -> std::optional<ShadedKeyframe> {
+    VectorView<const float> normals = options.normal_of_corner;
+    if (k > 0) {
+      Result<std::vector<float>> of_keyframe =
+          options.normals_of_keyframe ? options.normals_of_keyframe(k) : std::vector<float>();
+      if (!of_keyframe || of_keyframe.value().size() != 3 * motion.topology.corner_count()) return std::nullopt;
+      later = std::move(of_keyframe).value();
+      normals = VectorView<const float>::packed(later.data(), later.size() / 3);
+    }
+    if (!stream.hold(k, k)) return std::nullopt;
+    std::vector<StoredNormal> stored;
+    for (std::uint32_t e = 0; e < groups.size(); ++e) {
+      if (groups.corners(e).empty()) continue;
+      const std::size_t c = groups.corners(e)[0];
+      const Vec3d normal = to_double(normals[c]);
+      if (normal != Vec3d{} && is_finite(normal)) stored.push_back({motion.topology.corners()[c], e, normal});
+    }
+    const std::vector<float>& positions = motion.keyframes[k].positions;
+    return ShadedKeyframe{VectorView<const float>::packed(positions.data(), positions.size() / 3), std::move(stored)};
+  };
+  return find_authored_weighting(motion.topology, groups, motion.keyframes.size(), read).detected;
 }
 
 // Returns the times of keyframes as the file stores them: in float32, and shifted so that no time is below 0.
@@ -393,6 +403,9 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!found) return found.error();
   std::vector<SequenceElement>& elements = found.value().elements;
   SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding, false, normals.keys(), {}};
+  const bool by_area =
+      report.weighting == Weighting::kArea && options.weighting.value_or(Weighting::kArea) == Weighting::kArea;
+  targets.follow_author = encoding != BakeEncoding::kEndpoint && !(by_area && motion.topology.all_triangles());
   SequenceFile file(motion.topology, groups.value(), normals.base(), elements, options, std::move(spool));
   file.set_origin(motion.origin);
   if (is_exact) {

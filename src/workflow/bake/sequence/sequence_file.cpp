@@ -142,6 +142,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
 // target, its weight is 1 minus the sum of the weights of all other keys.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
+  mark.author = targets.follow_author;
   const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;
   for (const std::size_t s : targets.bent_segments) {
     GltfExtraTarget& extra = mark.extras.emplace_back();

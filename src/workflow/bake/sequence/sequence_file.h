@@ -32,6 +32,9 @@ struct SequenceTargets {
   bool has_key_0 = false;
   std::size_t keys = 0;
   std::vector<std::size_t> bent_segments;
+  /// True if normals at keys are right, but are not area-weighted sums over the triangles of the file. The mark of the
+  /// file then says so (GltfBakeMark::author).
+  bool follow_author = false;
 
   [[nodiscard]] std::size_t of_keys() const noexcept { return keys - (has_key_0 ? 0U : 1U); }
   [[nodiscard]] std::size_t count() const noexcept { return of_keys() + bent_segments.size(); }
