@@ -150,7 +150,7 @@ def measure_table1(page):
               f"{percent(1 - matrix[2])} and {percent(1 - matrix[3])}")
     page.requires((slerp > 1).all() and ours["quadratic"][3] > slerp[3] and matrix[0] > slerp[0], "slerp is not always the worst")
     measure_parts(page, ours)
-    page.says(f"`quadratic` is worse than linear ({ratio(ours['quadratic'][3])})", f"`cubic` is better ({ratio(cubic[3])})")
+    page.says(f"`quadratic` is worse than linear (ratio {ratio(ours['quadratic'][3])})", f"`cubic` is better (ratio {ratio(cubic[3])})")
 
 
 def draw_ratios(page, theirs, ours):
@@ -190,8 +190,8 @@ def measure_parts(page, ours):
     page.table("slerp_parts", ["error of slerp, degrees", *MORPHS],
                [[title, *(row[k] for row in rows)] for k, title in ((1, "distance from its path"), (2, "along the path"))])
     page.says(f"({rows[0][1]} degrees away on average)", f"({rows[0][2]} degrees)",
-              f"`linear:scaled`, which only scales one end, is at {ratio(ours['linear:scaled'][0])}",
-              f"`quaternion:matrix` is worse than linear ({ratio(ours[MATRIX][0])})", f"frames gain only {percent(1 - ours[OPTIMAL][0], 1)}")
+              f"`linear:scaled`, which only scales one end, has the ratio {ratio(ours['linear:scaled'][0])}",
+              f"`quaternion:matrix` is worse than linear (ratio {ratio(ours[MATRIX][0])})", f"frames gain only {percent(1 - ours[OPTIMAL][0], 1)}")
 
 
 # The next functions make section 2 of docs/paper.md.
@@ -525,7 +525,7 @@ def measure_slips(page):
               f"A face of eversion then takes {exact['bytes']:.0f} bytes on average and a face of soup {row['soup', 'polynomial']['bytes']:.0f} bytes",
               f"by {scientific(rational['mean_degrees'], 1)} degrees on average on eversion, and by {scientific(rational['max_degrees'], 1)} at worst",
               f"worse than linear on {percent(np.mean(part.sums(TIMED) > part.sums('linear')))} of the faces",
-              f"On soup `circle:timed` is at {soup[TIMED]}, behind `quadratic` at {soup['quadratic']}", f"({soup['circle']} against {soup[OPTIMAL]})")
+              f"On soup `circle:timed` has the ratio {soup[TIMED]}, and `quadratic` {soup['quadratic']}", f"(ratio {soup['circle']} against {soup[OPTIMAL]})")
 
 
 # The next functions make section 7 of docs/paper.md.
