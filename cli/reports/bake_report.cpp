@@ -426,7 +426,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   for (const BakedMesh& mesh : bake.meshes) tangents += mesh.new_tangents;
   if (tangents > 0)
     text += counted(tangents, "target has new tangents, since its", "targets have new tangents, since their") +
-            " old ones did not fit the new normals\n";
+            " old ones did not fit the normals\n";
   return text + left_text(bake) + viewers_text(bake, report) + left_over(bake) + lines_after(report);
 }
 

@@ -1,6 +1,7 @@
 #include "chronormal/motion/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/charconv.h"
 #include "core/text.h"
 #include "core/twofold.h"
 
@@ -96,7 +98,25 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   return result;
 }
 
-Result<Instant> find_instant(const Motion& motion, double time) {
+double time_of_keyframe_at(const Motion& motion, double time) noexcept {
+  constexpr double kHalfUnit = 0x1p-24;      // the relative error of rounding to float32
+  constexpr double kRounding = 8 * 0x1p-53;  // of a sum of steps, such as 7 x 0.1
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    const double key = keyframe.time, most = std::fabs(key);
+    const auto stored = static_cast<float>(key);
+    if (time == key || !(std::fabs(time - key) <= kHalfUnit * most) || double{stored} != key) continue;
+    std::array<char, 32> text{};
+    double decimal = 0;
+    const auto written = to_chars(text.data(), text.data() + text.size(), stored);
+    if (from_chars(text.data(), written.ptr, decimal).ec == std::errc{} &&
+        std::fabs(time - decimal) <= kRounding * most)
+      return key;
+  }
+  return time;
+}
+
+Result<Instant> find_instant(const Motion& motion, double asked) {
+  const double time = time_of_keyframe_at(motion, asked);
   if (motion.segments.empty()) return misuse("the mesh does not move, so it has no times; leave the times out");
   if (motion.kind == MotionKind::kTargets)
     return misuse("blend shapes have no times; give a weight for each target instead");

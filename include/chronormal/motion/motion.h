@@ -194,9 +194,14 @@ struct Instant {
   LocalTime t;
 };
 
-/// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
-/// later one, and the end of the motion is the end of the last one. The motion must be valid, or a mesh at rest.
-/// O(segments). Errors: kUsage for a time outside of the motion, with the valid range; for targets; and for a mesh at
+/// Returns the time of a keyframe if that time was stored in float32 and `time` is its shortest decimal; otherwise
+/// returns `time`. A file that stores 0.4 in float32 has a keyframe at 0.4000000059..., which a user calls 0.4.
+/// O(keyframes).
+[[nodiscard]] double time_of_keyframe_at(const Motion& motion, double time) noexcept;
+
+/// Finds the segment and the local t of a time in seconds, as time_of_keyframe_at() returns it. A keyframe between two
+/// segments is the beginning of the later one, and the end of the motion is the end of the last one. The motion must be
+/// valid, or a mesh at rest. O(segments). Errors: kUsage for a time outside of the motion, with the valid range; for targets; and for a mesh at
 /// rest.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 

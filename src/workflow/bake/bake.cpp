@@ -162,7 +162,7 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   const SharedParts parts(source.shading);
   for (std::size_t i = 0; i < is_stale.size(); ++i) {
     if (!is_stale[i]) continue;
-    TargetDeltas deltas = tangent_deltas(source, i);
+    TargetDeltas deltas = tangent_deltas(source, i, false);
     parts.join(deltas);
     bytes += parts.bytes_of(deltas);
   }
@@ -230,7 +230,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
-  std::vector<bool> is_stale = find_stale_tangents(source, options.viewers);
+  std::vector<bool> is_stale = find_stale_tangents(source, options.viewers, false);
   std::size_t tangent_bytes = bytes_of_tangents(source, is_stale);
   if (options.most_delta_bytes && tangent_bytes > *options.most_delta_bytes) {
     baked.report.left_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
@@ -248,6 +248,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
 
   const bool any_base = std::find(base.is_replaced.begin(), base.is_replaced.end(), true) != base.is_replaced.end();
   const bool any_new = deltas.is_new || any_base;
+  if (!any_new && baked.report.left_tangents == 0)
+    is_stale = find_stale_tangents(source, options.viewers, true);  // tangents then have to fit the normals that stay
   baked.report.new_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
   if (!any_new && baked.report.new_tangents == 0) return Success{};
   if (baked.report.new_tangents > 0) writer.add_tangents();
@@ -261,7 +263,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
       if (of_target)
         baked.report.largest_error = std::fmax(baked.report.largest_error, of_target->error * kDegreesPerRadian);
     }
-    if (is_stale[i]) tangents = tangent_deltas(source, i);
+    if (is_stale[i]) tangents = tangent_deltas(source, i, !any_new);
     writer.write_target(i, of_target, tangents);
     course.write(i);
     if (Status status = check_size(); !status) return status;

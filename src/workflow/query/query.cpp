@@ -53,7 +53,8 @@ std::size_t QueryColumn::rows() const noexcept {
 
 Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
-  const double from = span.from.value_or(-kEndless), to = span.to.value_or(kEndless);
+  const double from = span.from ? time_of_keyframe_at(motion, *span.from) : -kEndless,
+               to = span.to ? time_of_keyframe_at(motion, *span.to) : kEndless;
   if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the time must be later than that of --from"};
   std::vector<SegmentPart> parts;
   double first = kEndless, last = -kEndless;

@@ -6,6 +6,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/motion/motion.h"
+#include "workflow/truth/stored_keys.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -22,6 +23,15 @@ Vec3d tangent_of(const GltfShading& shading, std::size_t vertex) {
 Vec3d normal_of(const DeltaSource& source, std::size_t vertex) {
   const float* const n = source.base_normals.data() + 3 * vertex;
   return to_double(Vec3f{n[0], n[1], n[2]});
+}
+
+// Returns the unit normals of the vertices as the file stores them at weight 1 of a target.
+std::vector<Vec3d> stored_normals(const GltfShading& shading, std::size_t target) {
+  const StoredKey key(shading, target);
+  std::vector<Vec3d> result(shading.element_of_vertex.size());
+  for (std::uint32_t v = 0; v < result.size(); ++v)
+    if (const Vec3d normal = unit(key.normal(v)); is_finite(normal)) result[v] = normal;
+  return result;
 }
 
 // Returns the true unit normals of the vertices at weight 1 of a target. A vertex without a normal gets (0, 0, 0).
@@ -99,7 +109,7 @@ bool has_tangents(const GltfShading& shading, const GltfPart& part) {
 
 }  // namespace
 
-std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers) {
+std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers, bool keeps_normals) {
   const GltfShading& shading = source.shading;
   std::vector<bool> result(shading.set.targets.size(), false);
   if (shading.tangents.empty() ||
@@ -110,7 +120,7 @@ std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const
   };
   for (std::size_t k = 0; k < shading.own_targets(); ++k) {
     if (!moves(shading, k)) continue;
-    const std::vector<Vec3d> rights = right_normals(source, k);
+    const std::vector<Vec3d> rights = keeps_normals ? stored_normals(shading, k) : right_normals(source, k);
     for (std::size_t v = 0; v < rights.size() && !result[k]; ++v) {
       const Vec3d before = tangent_of(shading, v), stored = normal_of(source, v);
       Vec3d after = before;
@@ -125,9 +135,10 @@ std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const
   return result;
 }
 
-TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target) {
+TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target, bool keeps_normals) {
   const GltfShading& shading = source.shading;
-  const std::vector<Vec3d> rights = right_normals(source, target), tangents = carried_tangents(shading, target);
+  const std::vector<Vec3d> rights = keeps_normals ? stored_normals(shading, target) : right_normals(source, target),
+                           tangents = carried_tangents(shading, target);
   TargetDeltas result;
   for (const GltfPart& part : shading.parts) {
     std::vector<float>& deltas = result.of_parts.emplace_back();

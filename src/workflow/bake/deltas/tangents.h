@@ -10,6 +10,9 @@
 ///                90 degrees than in the base, by more than a degree. If one vertex has a stale tangent, all tangents
 ///                of the target are computed anew. Otherwise all of them stay as they are.
 ///
+/// If the normals of a mesh stay as the file stores them, its tangents have to fit these normals instead of the right
+/// ones (keeps_normals).
+///
 /// If several targets are active, their changes of a tangent add up. Tangents are then as accurate as normals with one
 /// delta for each target.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_TANGENTS_H_
@@ -27,11 +30,12 @@ namespace chronormal::inline internal {
 /// Returns for each target if its stored tangents are stale (no longer nearly perpendicular to the normal). If no
 /// viewer adds up tangents, all results are false. The shading must have been read with its deltas. Takes O(corners)
 /// for each target that moves a vertex.
-[[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
+[[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers,
+                                                    bool keeps_normals);
 
 /// Returns the deltas of tangents for a target, as arrays (vertices, 3) for each part. The array of a part without
 /// tangents is empty.
-[[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target);
+[[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target, bool keeps_normals);
 
 }  // namespace chronormal::inline internal
 
