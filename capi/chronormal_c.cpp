@@ -110,7 +110,7 @@ Status check_size(const Struct& given, const char* name) {
   constexpr std::size_t kMost = 4096;
   if (given.size > kMost)
     return Error{ErrorCode::kUsage, place,
-                 std::string("the size is larger than any version of this structure; call chronormal_") + name +
+                 std::string("the size is larger than that of any version of this structure; call chronormal_") + name +
                      "_init() to set it"};
   const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
   if (std::any_of(bytes + sizeof(Struct), bytes + given.size, [](unsigned char byte) { return byte != 0; }))
@@ -309,7 +309,8 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
     if (chosen.value().weighting != Weighting::kArea)
       return misuse("options.weighting", "normals of blend shapes can only be weighted by area; choose this weighting");
     if (chosen.value().tolerance != kExactTolerance)
-      return misuse("options.tolerance", "the tolerance of blend shapes must be 1e-6");
+      return misuse("options.tolerance",
+                    "the tolerance must be 1e-6 radians for blend shapes, which are always exact; set it to 1e-6");
     Result<Topology> topology = topology_of(mesh);
     if (!topology) return fail(topology.error());
     const auto packed = [](VectorView<const float> view) {
@@ -323,7 +324,9 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
     for (std::size_t k = 0; k < target_count; ++k) {
       const chronormal_target& target = targets[k];
       if (target.vertices == nullptr && target.count != mesh->vertex_count)
-        return misuse("targets", "a target without a list of vertices must have a delta for every vertex");
+        return misuse("targets",
+                      "a target without a list of vertices must have a delta for every vertex of the mesh; give the "
+                      "list, or all deltas");
       const auto deltas = view_of(target.deltas, target.count, "targets");
       if (!deltas) return fail(deltas.error());
       std::vector<float> values = packed(deltas.value());
@@ -362,7 +365,7 @@ chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const do
   return guarded([&] {
     const std::span<const double> all(weights, blend->targets);
     if (!std::all_of(all.begin(), all.end(), [](double weight) { return std::isfinite(weight); }))
-      return misuse("weights", "a weight is NaN or infinite");
+      return misuse("weights", "a weight is NaN or infinite; give finite weights");
     blend->blend.set_weights(all, blend->threads);
     return CHRONORMAL_DONE;
   });

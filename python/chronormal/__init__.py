@@ -137,7 +137,7 @@ def _float(value, place):
     try:
         return float(value)
     except OverflowError:
-        raise ValueError(f"{place}: the number is too large for a float") from None
+        raise ValueError(f"{place}: the number is too large for a float; give a smaller number") from None
     except TypeError:
         raise TypeError(f"{place}: the value must be a number, not {type(value).__name__}") from None
 

@@ -36,7 +36,7 @@ struct Numbers {
       one = PyFloat_AsDouble(given.ptr());
       if (PyErr_Occurred() == nullptr) return;
       PyErr_Clear();
-      refuse(place, "the number is too large for a float");
+      refuse(place, "the number is too large for a float; give a smaller number");
     }
     many = Array<double>::ensure(given);
     if (!*many) {

@@ -153,7 +153,7 @@ struct ZeroedObject {
 };
 
 inline void require_made(bool is_made) {
-  require(is_made, "self", "the object is not ready, since its __init__() has not run");
+  require(is_made, "self", "the object is not ready, since its __init__() has not run; call __init__() first");
 }
 
 void add_certificates(py::module_& module);

@@ -21,7 +21,8 @@ class Turns {
   // handler that runs during a computation of the same thread, where waiting for the turn would never end.
   Turns& required_of_others() {
     require(owner_ != std::this_thread::get_id(), "self",
-            "a signal handler uses the object whose computation it interrupts; use the object after the computation");
+            "a signal handler cannot use the object whose computation it interrupts; use the object after the "
+            "computation has ended");
     return *this;
   }
   void lock();

@@ -183,7 +183,7 @@ class Blend : public ZeroedObject {
     const double* const values = kept.data();
     for (std::size_t i = 0; i < rows * targets_; ++i)
       if (!std::isfinite(values[i]))
-        refuse("weights", "weight " + std::to_string(i % targets_) + " is NaN or infinite");
+        refuse("weights", "weight " + std::to_string(i % targets_) + " is NaN or infinite; give finite weights");
     const Computation computing(turns_);
     for (std::size_t r = 0; r < rows; ++r) {
       check_interruption();
@@ -253,7 +253,7 @@ void add_curves(py::module_& module) {
   py::class_<Curves> curves(module, "Curves",
                             R"(Unit normals between two arrays of positions, exact for every t in [0, 1].
 
-Made by chronormal.curves(). len() is the number of normals n: faces, vertices or corners.)");
+Made by chronormal.curves(). len() is n, the number of normals: one for each face, vertex or corner.)");
   refuse_to_be_pickled(curves);
   curves
       .def(py::init<const Array<float>&, const Array<float>&, const Array<std::uint32_t>&, const Array<std::uint32_t>&,
@@ -261,32 +261,34 @@ Made by chronormal.curves(). len() is the number of normals n: faces, vertices o
       .def("unit_normals", &Curves::unit_normals, py::arg("t"), py::arg("out") = py::none(), py::arg("threads") = 1,
            R"(Return the unit normals at t, (0, 0, 0) where there is none.
 
-t        a float in [0, 1], else ValueError: the result is (n, 3) float32; or T of them: (T, n, 3)
+t        one float from 0 to 1, which gives (n, 3) float32, or an array of T floats, which gives (T, n, 3)
 out      where to write, a C-contiguous float32 array of that shape, which is returned
-threads  1: the calling thread; 0: all cores where there is enough to do; k: at most k
+threads  1 for the calling thread, 0 for all cores if there is enough to do, k for at most k threads
 
-The GIL is released. Raises ValueError for shapes that do not fit.)")
+The GIL is released. Raises ValueError if t is outside of [0, 1] or a shape does not fit.)")
       .def("errors", &Curves::errors, py::arg("t"), py::arg("normals"), py::arg("threads") = 1,
            R"(Return the angles between given normals and the exact ones, in degrees: (n,) or (T, n) float32.
 
 normals  (n, 3) or (T, n, 3) float32: the normals at t that are judged; their lengths do not matter
 NaN      where the exact normal or the given one has no direction)")
-      .def("next", &Curves::next, py::arg("p0"), py::arg("p1"),
-           R"(Prepare the next segment of the same mesh in the same memory; p0 and p1 are (V, 3) float32.)")
+      .def(
+          "next", &Curves::next, py::arg("p0"), py::arg("p1"),
+          R"(Prepare the motion from p0 to p1 instead, in the same memory: (V, 3) float32 positions of the same mesh.)")
       .def_property_readonly(
           "control_normals", &Curves::control_normals,
-          R"((n, 3, 3) float32, made anew each time: n0, m and n1 of each normal; only for a tolerance of 1e-6.
+          R"(The vectors n0, m and n1 of each normal, as a new (n, 3, 3) float32 array; needs a tolerance of 1e-6.
 
 n(t) is (1 - t)**2 * n0 + 2 * t * (1 - t) * m + t**2 * n1; the unit normal is n(t) / |n(t)|.)")
       .def_property_readonly("bytes", &Curves::bytes, "Memory that the curves keep, in bytes.")
-      .def_property_readonly("elements", &Curves::elements, "\"faces\", \"vertices\" or \"corners\".")
+      .def_property_readonly("elements", &Curves::elements,
+                             "What the normals belong to: \"faces\", \"vertices\" or \"corners\".")
       .def_property_readonly("fit_bound", &Curves::fit_bound,
                              "The largest error, in radians, of the fit for another weighting than area; 0 for area.")
       .def("__len__", &Curves::size)
       .def("__repr__", &Curves::text);
   py::class_<Blend> blend(module, "Blend", R"(Unit normals of blend shapes, exact at any weights.
 
-Made by chronormal.blend(). len() is the number of normals n: faces, vertices or corners.)");
+Made by chronormal.blend(). len() is n, the number of normals: one for each face, vertex or corner.)");
   refuse_to_be_pickled(blend);
   blend
       .def(py::init<const Array<float>&, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>&,
@@ -296,9 +298,9 @@ Made by chronormal.blend(). len() is the number of normals n: faces, vertices or
            py::arg("threads") = 1,
            R"(Return the unit normals at some weights, (0, 0, 0) where there is none.
 
-weights  (K,), one for each target: the result is (n, 3) float32; or (T, K): (T, n, 3)
+weights  (K,) weights, one for each target, which give (n, 3) float32, or (T, K), which give (T, n, 3)
 out, threads  as for Curves.unit_normals())")
-      .def_property_readonly("targets", &Blend::targets, "The number K of targets.")
+      .def_property_readonly("targets", &Blend::targets, "K, the number of morph targets.")
       .def_property_readonly("bytes", &Blend::bytes, "Memory that the blend keeps, in bytes.")
       .def("__len__", &Blend::size)
       .def("__repr__", &Blend::text);

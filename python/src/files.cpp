@@ -491,20 +491,25 @@ void add_files(py::module_& module) {
                     const Array<double>&>())
       .def(py::pickle([](const ReadMotion& self) { return self.state(); },
                       [](const py::tuple& state) { return std::make_unique<ReadMotion>(state); }))
-      .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
-      .def_property_readonly("origin", &ReadMotion::origin,
-                             "[x, y, z], the point from which positions are measured: 0, 0, 0, unless a file has more "
-                             "digits far from there than float32 can hold.")
       .def_property_readonly(
-          "faces", &ReadMotion::faces,
-          "(F, k) uint32 where all faces have k corners, else (offsets, corners); curves() takes both.")
+          "positions", &ReadMotion::positions,
+          "The position of each vertex at each keyframe, (T, V, 3) float32; the same array each time.")
+      .def_property_readonly("origin", &ReadMotion::origin,
+                             "The point [x, y, z] from which positions are measured. It is 0, 0, 0, unless the file "
+                             "has a mesh so far from there that float32 cannot hold its digits.")
+      .def_property_readonly("faces", &ReadMotion::faces,
+                             "The vertices of each face, as curves() takes them: (F, k) uint32 if all faces have k "
+                             "corners, else (offsets, corners).")
       .def_property_readonly("velocities", &ReadMotion::velocities,
-                             "(T, V, 3) float32 per second, where every keyframe of the file has them; else None.")
-      .def_property_readonly("times", &ReadMotion::times, "(T,) float64: seconds, or the weight for targets.")
+                             "The velocity of each vertex at each keyframe, in units per second, (T, V, 3) float32; "
+                             "None if the file has none.")
+      .def_property_readonly("times", &ReadMotion::times,
+                             "The time of each keyframe in seconds, or its weight if it is a target; (T,) float64.")
       .def_property_readonly("names", &ReadMotion::names, "The name of each keyframe: a file, a target, or \"\".")
       .def_property_readonly("segments", &ReadMotion::segments,
-                             "(S, 2) int64: the keyframes at both ends of each segment.")
-      .def_property_readonly("kind", &ReadMotion::kind, "\"sequence\", \"targets\", \"animation\" or \"mesh\".")
+                             "The keyframes at the start and the end of each segment, (S, 2) int64.")
+      .def_property_readonly("kind", &ReadMotion::kind,
+                             "What the motion was made from: \"sequence\", \"targets\", \"animation\" or \"mesh\".")
       .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
            py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
            py::arg("weld") = true, py::arg("scheme") = "",
@@ -514,7 +519,7 @@ writes them.
 times    (T,) seconds of a sequence or an animation
 weights  (T, K) weights of K targets
 scheme   a name of schemes(), which interpolates between the exact normals at keyframes; "": exact at every time
-A mesh that does not move takes neither.)")
+For a mesh that does not move, leave out both times and weights.)")
       .def("__repr__", &ReadMotion::text);
 }
 

@@ -4,7 +4,7 @@
 namespace py = pybind11;
 
 PYBIND11_MODULE(_chronormal, module) {
-  module.doc() = "The library behind the package chronormal.";
+  module.doc() = "The compiled part of the package chronormal; import chronormal instead.";
   module.attr("__version__") = CHRONORMAL_VERSION;
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {

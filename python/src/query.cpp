@@ -72,7 +72,8 @@ PointPaths paths_of(const Array<double>& points) {
     const double* const first = points.data() + row * i;
     for (std::size_t k = 0; k < row; ++k) {
       if (!std::isfinite(static_cast<float>(first[k])))
-        refuse("points[" + std::to_string(i) + "]", "a coordinate is NaN, infinite or too large for float32");
+        refuse("points[" + std::to_string(i) + "]",
+               "a coordinate is NaN, infinite or too large for float32; give finite numbers of at most 3.4e38");
     }
     paths.from.insert(paths.from.end(), first, first + 3);
     paths.to.insert(paths.to.end(), first + row - 3, first + row);

@@ -184,7 +184,7 @@ class CurvesTest(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, f"^{place}: the value must be from 0 to 1"):
                     call(t)
         blend = cn.blend(self.positions[0], [self.positions[1]], self.faces)
-        with self.assertRaisesRegex(ValueError, "weight 0 is NaN or infinite"):
+        with self.assertRaisesRegex(ValueError, "weight 0 is NaN or infinite; give finite weights"):
             blend.unit_normals([float("nan")])
 
     def test_a_tuple_of_two_faces_is_two_faces(self):

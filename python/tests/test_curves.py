@@ -209,7 +209,7 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: cn.curves(p0, p1[:5], faces), "keyframe 1: the keyframe has 5 positions, but the mesh has 12 vertices"),
                 (lambda: cn.curves(p0[:, :2], p1, faces), r"p0: the shape must be \(n, 3\), a vector in each of n rows, but is \(12, 2\)"),
                 (lambda: cn.curves(p0.astype(complex), p1, faces), "p0: the array must hold real numbers, best as float32"),
-                (lambda: cn.curves(infinite, p1, faces), "keyframe 0, vertex 7: the position is NaN or infinite"),
+                (lambda: cn.curves(infinite, p1, faces), "keyframe 0, vertex 7: the position is NaN or infinite; positions must be finite numbers"),
                 (lambda: cn.curves(p0, p1, [[0, 1, 99]]), "face 0, corner 2: the corner refers to vertex 99"),
                 (lambda: cn.curves(p0, p1, [[0, 1, -2]]), r"faces\[0, 2\]: -2 cannot be an index"),
                 (lambda: cn.curves(p0, p1, [[0, 1, 2 ** 40]]), r"faces\[0, 2\]: 1099511627776 cannot be an index"),

@@ -144,7 +144,7 @@ class SignalTest(unittest.TestCase):
             # work is therefore doubled each time.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
-        self.assertIn("a signal handler uses the object whose computation it interrupts; use the object after the computation", said[1])
+        self.assertIn("a signal handler cannot use the object whose computation it interrupts; use the object after the computation has ended", said[1])
 
 
 @unittest.skipUnless(hasattr(os, "fork"), "this system has no fork()")

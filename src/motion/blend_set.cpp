@@ -68,7 +68,7 @@ Status validate(const BlendTarget& target, const Topology& topology, std::size_t
     if (n > 0 && target.vertices[n] <= target.vertices[n - 1])
       return invalid_input(place(n), "the vertices of a target must be in ascending order, each once");
     if (!all_finite(std::span(target.deltas).subspan(3 * n, 3)))
-      return invalid_input(place(n), "the delta is NaN or infinite");
+      return invalid_input(place(n), "the delta is NaN or infinite; deltas must be finite numbers");
   }
   return Success{};
 }
@@ -80,7 +80,8 @@ Status validate(const BlendSet& set) {
                                      ", but must have 3 for each");
   for (std::size_t v = 0; v < set.topology.vertex_count(); ++v) {
     if (!all_finite(std::span(set.base).subspan(3 * v, 3)))
-      return invalid_input("base, vertex " + std::to_string(v), "the position is NaN or infinite");
+      return invalid_input("base, vertex " + std::to_string(v),
+                           "the position is NaN or infinite; positions must be finite numbers");
   }
   for (std::size_t k = 0; k < set.targets.size(); ++k)
     if (Status status = validate(set.targets[k], set.topology, k); !status) return status;

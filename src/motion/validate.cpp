@@ -69,11 +69,11 @@ Status check_rest(const Motion& motion, std::size_t k) {
     for (std::size_t i = 0; i < velocities->size(); ++i) {
       if (!std::isfinite((*velocities)[i]))
         return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                             "the velocity is NaN or infinite");
+                             "the velocity is NaN or infinite; velocities must be finite numbers");
     }
   }
   if (!std::isfinite(motion.keyframes[k].time))
-    return invalid_input(keyframe_place(motion, k), "the time is NaN or infinite");
+    return invalid_input(keyframe_place(motion, k), "the time is NaN or infinite; times must be finite numbers");
   return Success{};
 }
 
@@ -106,7 +106,7 @@ Status internal::validate_positions(const Motion& motion, std::size_t k, std::sp
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!std::isfinite(positions[i]))
       return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                           "the position is NaN or infinite");
+                           "the position is NaN or infinite; positions must be finite numbers");
   }
   return Success{};
 }

@@ -91,10 +91,12 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   for (const float bad : {nan, infinity, -infinity}) {
     set = small_set();
     set.base[7] = bad;
-    EXPECT_EQ(error_of(validate(set)), "base, vertex 2: the position is NaN or infinite");
+    EXPECT_EQ(error_of(validate(set)),
+              "base, vertex 2: the position is NaN or infinite; positions must be finite numbers");
     set = small_set();
     set.targets[1].deltas[5] = bad;
-    EXPECT_EQ(error_of(validate(set)), "target 1, entry 1: the delta is NaN or infinite");
+    EXPECT_EQ(error_of(validate(set)),
+              "target 1, entry 1: the delta is NaN or infinite; deltas must be finite numbers");
   }
   set = small_set();
   set.targets[1].deltas.pop_back();

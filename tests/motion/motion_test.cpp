@@ -94,7 +94,7 @@ TEST(Validate, refuses_what_is_not_finite_and_says_where) {
   expect_invalid(motion, "frame 1, vertex 0", "finite");
   motion = two_frames();
   motion.keyframes[1].time = std::numeric_limits<double>::infinity();
-  expect_invalid(motion, "frame 1", "the time is NaN or infinite");
+  expect_invalid(motion, "frame 1", "the time is NaN or infinite; times must be finite numbers");
 }
 
 TEST(Validate, refuses_frames_of_another_size) {

@@ -17,9 +17,9 @@ Status Expansion::check(std::uint64_t bytes, const std::string& place) const {
   if (bytes <= most()) return Success{};
   const std::uint64_t times = read_ == 0 ? bytes : bytes / read_ + (bytes % read_ == 0 ? 0 : 1);
   return invalid_input(place, "an input of " + counted(read_, "byte", "bytes") + " would need " +
-                                  counted(bytes, "byte", "bytes") + " of memory or output, but the limit is " +
-                                  grouped(most()) + "; if you trust the file, add --max-expansion " +
-                                  std::to_string(times));
+                                  counted(bytes, "byte", "bytes") +
+                                  " of memory or output, which is more than the limit of " + grouped(most()) +
+                                  "; if you trust the file, add --max-expansion " + std::to_string(times));
 }
 
 }  // namespace chronormal::inline internal

@@ -56,7 +56,7 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
     return Error{ErrorCode::kFailed, place, "this is a folder; name a file"};
   // A device such as /dev/zero may have no end. A terminal is accepted, because the user can end its input with a key.
   if (status->kind == FileStatus::Kind::kDevice)
-    return Error{ErrorCode::kFailed, place, "this is a device, whose data may never end; name a file"};
+    return Error{ErrorCode::kFailed, place, "this is a device, whose data may never end; name a regular file"};
 
   FileBytes file;
   // The kernel's own files, as in /proc, report size 0. Most of these files have an end, but reading the kernel's log

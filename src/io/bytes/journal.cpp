@@ -33,9 +33,9 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
   const int file = journal.file_.number();
   std::optional<FileStatus> status = journal.file_.is_open() ? status_of(file) : std::nullopt;
   if (!status) return failure(path, errno);
-  const Error foreign{
-      ErrorCode::kFailed, path,
-      "the journal of --resume needs this name, but this file is no journal; remove it, or choose another output"};
+  const Error foreign{ErrorCode::kFailed, path,
+                      "--resume keeps its progress in a file of this name, but another file has this name; remove this "
+                      "file, or choose another output"};
   if (!status->is_file()) return foreign;
   // On a file system without locks, lock_file() always succeeds, so two runs that write the same output do not notice
   // each other.

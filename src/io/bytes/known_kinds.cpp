@@ -59,7 +59,7 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"MZ\x90\0"sv, "a program for Windows"},
     {"\0asm"sv, "a WebAssembly module"},
     {"SQLite format 3\0"sv, "an SQLite database"},
-    {"version https://git-lfs"sv, "a placeholder of Git LFS (fetch the file with git lfs pull)"},
+    {"version https://git-lfs"sv, "a placeholder of Git LFS (run git lfs pull to get the file itself)"},
     {"\xFF\xFE"sv, "text in UTF-16"},
     {"\xFE\xFF"sv, "text in UTF-16"},
     {"<!doctype html"sv, "an HTML page"},

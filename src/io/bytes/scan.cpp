@@ -162,17 +162,17 @@ std::string quoted(std::string_view word) {
 }
 
 std::string describe(NumberFault fault, std::string_view word) {
-  if (word.empty()) return "a number is missing";
+  if (word.empty()) return "a number is missing here; add it, or export the file again";
   switch (fault) {
     case NumberFault::kNotFinite:
-      return quoted(word) + " is NaN or infinite";
+      return quoted(word) + " is NaN or infinite; write a finite number";
     case NumberFault::kTooLarge:
-      return quoted(word) + " is too large for float32";
+      return quoted(word) + " is too large for float32; write a smaller number";
     case NumberFault::kNotANumber:
     case NumberFault::kNone:
       break;
   }
-  return quoted(word) + " is not a number";
+  return quoted(word) + " is not a valid number here; correct it, or export the file again";
 }
 
 }  // namespace chronormal::inline internal::scan

@@ -34,14 +34,16 @@ class DescriptionReader {
       return error(parsed ? 0 : static_cast<std::size_t>(parsed.offset),
                    parsed ? "this is not the description of a Maya cache, since it has no element Autodesk_Cache_File; "
                             "name the .xml file that Maya wrote"
-                          : "the XML is not valid: " + std::string(parsed.description()));
+                          : "the XML is not valid; export the cache again. The XML reader says: " +
+                                std::string(parsed.description()));
 
     const pugi::xml_node type = root.child("cacheType");
     if (Status status = read_type(type); !status) return status.error();
     if (const pugi::xml_node per_frame = root.child("cacheTimePerFrame")) {
       if (Status status = read_ticks(per_frame, "TimePerFrame", description_.ticks_per_frame); !status)
         return status.error();
-      if (description_.ticks_per_frame <= 0) return error(per_frame, "TimePerFrame must be greater than 0");
+      if (description_.ticks_per_frame <= 0)
+        return error(per_frame, "TimePerFrame must be greater than 0; export the cache again");
     }
     for (const pugi::xml_node channel : root.child("Channels").children()) {
       if (channel.type() != pugi::node_element) continue;
@@ -61,9 +63,11 @@ class DescriptionReader {
   [[nodiscard]] Status read_type(const pugi::xml_node& type) {
     const std::string_view files = type.attribute("Type").value(), format = type.attribute("Format").value();
     if (files != "OneFile" && files != "OneFilePerFrame")
-      return error(type, "Type of cacheType is " + scan::quoted(files) + ", but must be OneFile or OneFilePerFrame");
+      return error(type, "Type of cacheType is " + scan::quoted(files) +
+                             ", but must be OneFile or OneFilePerFrame; export the cache again");
     if (format != "mcc" && format != "mcx")
-      return error(type, "Format of cacheType is " + scan::quoted(format) + ", but must be mcc or mcx");
+      return error(
+          type, "Format of cacheType is " + scan::quoted(format) + ", but must be mcc or mcx; export the cache again");
     description_.has_file_per_frame = files == "OneFilePerFrame";
     description_.extension = format == "mcc" ? ".mc" : ".mcx";
     return Success{};
@@ -73,9 +77,10 @@ class DescriptionReader {
     const std::string_view word = node.attribute(attribute).value();
     std::int64_t value = 0;
     const scan::NumberFault fault = scan::parse_integer(word, value);
+    if (fault == scan::NumberFault::kTooLarge || value != static_cast<std::int32_t>(value))
+      return error(node, std::string(attribute) + ": " + scan::quoted(word) +
+                             " is too large for 32 bits; export the cache again");
     if (fault != scan::NumberFault::kNone) return error(node, attribute + (": " + scan::describe(fault, word)));
-    if (value != static_cast<std::int32_t>(value))
-      return error(node, attribute + (": " + scan::describe(scan::NumberFault::kTooLarge, word)));
     ticks = static_cast<std::int32_t>(value);
     return Success{};
   }

@@ -28,7 +28,8 @@ class ChunkReader {
   Result<std::vector<Points>> read() {
     is_wide_ = bytes_.starts_with("FOR8");
     if (!is_wide_ && !bytes_.starts_with("FOR4"))
-      return error(0, "this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
+      return error(
+          0, "this is not a Maya cache, since it begins neither with FOR4 nor with FOR8; name a .mc or .mcx file");
     for (std::size_t at = 0; at < bytes_.size();) {
       Chunk group;
       if (Status status = read_chunk(at, bytes_.size(), group); !status) return status.error();
@@ -218,7 +219,8 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
     if (count != cache.vertex_count)
       return invalid_input(binary::place(name, points.begin), "the channel " + scan::quoted(channel) + " has " +
                                                                   counted(count, "point", "points") + " here, but " +
-                                                                  grouped(cache.vertex_count) + " in earlier samples");
+                                                                  grouped(cache.vertex_count) +
+                                                                  " in earlier samples; export the cache again");
     PositionCache::Sample sample;
     sample.time = static_cast<double>(points.ticks) / kMayaTicksPerSecond;
     sample.positions.resize(3 * count);

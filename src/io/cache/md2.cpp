@@ -56,13 +56,15 @@ class Md2Reader {
   }
 
   [[nodiscard]] Status read_header() {
-    if (!bytes_.starts_with("IDP2")) return error(0, "this is not an MD2 file, since it does not begin with IDP2");
+    if (!bytes_.starts_with("IDP2"))
+      return error(0, "this is not an MD2 file, since it does not begin with IDP2; name an .md2 file");
     if (bytes_.size() < kMd2HeaderSize)
       return error(bytes_.size(), "the file is cut off inside its header of 68 bytes; copy or export it again");
     if (field(4) != 8)
-      return error(4, "version " + std::to_string(field(4)) + " of MD2 cannot be read; only version 8 can be read");
+      return error(4, "version " + std::to_string(field(4)) + " of MD2 cannot be read; export the file as version 8");
     if (field(24) <= 0)
-      return error(24, "the number of vertices is " + std::to_string(field(24)) + ", but must be at least 1");
+      return error(24, "the number of vertices is " + std::to_string(field(24)) +
+                           ", but must be at least 1; export a mesh with vertices");
     vertex_count_ = static_cast<std::size_t>(field(24));
     const std::uint64_t frame_size = kFrameHeaderSize + std::uint64_t{4} * vertex_count_;
     if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
@@ -78,8 +80,9 @@ class Md2Reader {
                                   std::int32_t fewest, const char* one, const std::string& many, Table& table) const {
     const std::int32_t count = field(count_at), begin = field(begin_at);
     if (count < fewest)
-      return error(count_at, "the number of " + many + " is " + std::to_string(count) +
-                                 ", but a motion needs at least " + std::to_string(fewest));
+      return error(count_at, "the number of " + many + " is " + std::to_string(count) + ", but must be at least " +
+                                 std::to_string(fewest) + "; export at least " + (fewest == 1 ? "one " : "two ") +
+                                 (fewest == 1 ? one : many));
     if (begin < 0 || static_cast<std::size_t>(begin) > bytes_.size() ||
         !binary::fits(static_cast<std::uint64_t>(count), record_size, bytes_.size() - static_cast<std::size_t>(begin)))
       return error(begin_at, "the file is cut off, since it should have " +

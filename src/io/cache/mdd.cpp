@@ -34,7 +34,8 @@ Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, 
     const std::size_t at = kMddHeaderSize + sizeof(float) * k;
     layout.times[k] = double{binary::load<float>(bytes.data() + at, kMddOrder)};
     if (!std::isfinite(layout.times[k]))
-      return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k), "the time is NaN or infinite");
+      return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k),
+                           "the time is NaN or infinite; times must be finite numbers");
   }
   return layout;
 }

@@ -102,12 +102,14 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
   if (!start.starts_with(kFirstWord))
-    return error("this is not a NumPy array, since it does not begin with \\x93NUMPY");
+    return error(
+        "this is not a NumPy array, since it does not begin with \\x93NUMPY; save it with numpy.save or numpy.savez");
   if (start.size() < 12) return error("the array is cut off inside its header; copy or save the file again");
   const auto version = static_cast<unsigned char>(start[6]);
   if (version < 1 || version > 3 || start[7] != '\0')
     return error("version " + std::to_string(version) + "." + std::to_string(static_cast<unsigned char>(start[7])) +
-                 " of the array header cannot be read; only 1.0, 2.0 and 3.0 can be read");
+                 " of the array header cannot be read, only 1.0, 2.0 and 3.0; save the array again with numpy.save or "
+                 "numpy.savez");
   const std::size_t text_begin = version == 1 ? 10 : 12;
   const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
                                              : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);
@@ -232,7 +234,7 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
   for (std::size_t at = found.data_begin; at < bytes.size(); at += step) {
     const std::uint32_t c =
         step == 4 ? binary::load<std::uint32_t>(bytes.data() + at, found.order) : static_cast<unsigned char>(bytes[at]);
-    if (c > 127) return invalid_input(place, "the text must be ASCII");
+    if (c > 127) return invalid_input(place, "the text must be ASCII; save it again without other characters");
     text += static_cast<char>(c);
   }
   // NumPy pads a short string with zero bytes at its end.

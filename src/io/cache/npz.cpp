@@ -195,7 +195,8 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
     if (array.kind == Kind::kFloat) time = array.real(k);
     if (array.kind == Kind::kInteger) time = static_cast<double>(array.integer(k));
     if (array.kind == Kind::kUnsigned) time = static_cast<double>(array.vertex(k));
-    if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is NaN or infinite");
+    if (!std::isfinite(time))
+      return invalid_input(element_place(place, {k}), "the time is NaN or infinite; times must be finite numbers");
   }
   return Success{};
 }
@@ -290,9 +291,9 @@ class Archive {
       names += i == 0 ? "" : ", ";
       names += i == kMostNamed ? "..." : std::string(name.ends_with(".npy") ? name.substr(0, name.size() - 4) : name);
     }
-    return invalid_input(place(array),
-                         "the file has no array of this name" +
-                             (names.empty() ? std::string(", and no other array either") : ", only " + names));
+    return invalid_input(place(array), "the file has no array of this name" +
+                                           (names.empty() ? std::string("; save the array under this name")
+                                                          : ", only " + names + "; save the array under this name"));
   }
   [[nodiscard]] const zip::Member* find(std::string_view array) const {
     for (const zip::Member& member : members_) {

@@ -19,13 +19,14 @@ constexpr std::endian kPc2Order = std::endian::little;
 Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                     const CacheOptions& options) {
   if (!bytes.starts_with(kFirstWord))
-    return invalid_input(binary::place(name, 0), "this is not a PC2 file, since it does not begin with POINTCACHE2");
+    return invalid_input(binary::place(name, 0),
+                         "this is not a PC2 file, since it does not begin with POINTCACHE2; name a .pc2 file");
   if (bytes.size() < kPc2HeaderSize)
     return invalid_input(binary::place(name, bytes.size()),
                          "the file is cut off inside its header of 32 bytes; copy or export it again");
   if (const auto version = binary::load<std::int32_t>(bytes.data() + 12, kPc2Order); version != 1)
     return invalid_input(binary::place(name, 12),
-                         "version " + std::to_string(version) + " of PC2 cannot be read; only version 1 can be read");
+                         "version " + std::to_string(version) + " of PC2 cannot be read; export the file as version 1");
   const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 16, kPc2Order),
                                    binary::load<std::int32_t>(bytes.data() + 28, kPc2Order)};
   const double first = double{binary::load<float>(bytes.data() + 20, kPc2Order)};
@@ -34,7 +35,7 @@ Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, 
     return invalid_input(binary::place(name, 20), "the start frame is NaN or infinite; export the file again");
   if (!std::isfinite(step) || !(step > 0))
     return invalid_input(binary::place(name, 24),
-                         "the sample rate, in frames, must be a number greater than 0; export the file again");
+                         "the number of frames between two samples must be greater than 0; export the file again");
   if (Status status = point_cache::check_counts(size, name, counts, kPc2HeaderSize, 0); !status) return status.error();
   CacheLayout layout = point_cache::layout_of(counts, kPc2HeaderSize, kPc2Order);
   for (std::size_t k = 0; k < layout.times.size(); ++k)
@@ -58,8 +59,8 @@ Result<std::string> pc2_header(const Motion& motion, double frames_per_second) {
     const double frame = double{first} + static_cast<double>(k) * double{step};
     if (!(std::fabs(frame - frame_of(k)) <= 1e-3 * double{step}))
       return Error{ErrorCode::kUsage, "",
-                   "PC2 needs keyframes at equal steps of time, but keyframe " + std::to_string(k) +
-                       " is not at such a step; write .mdd or .npz instead"};
+                   "PC2 needs equal times between keyframes, but keyframe " + std::to_string(k) +
+                       " is earlier or later than that; write .mdd or .npz instead"};
   }
 
   std::string bytes(kFirstWord);

@@ -32,7 +32,7 @@ struct Counts {
   if (counts.vertices <= 0 || counts.samples <= 0)
     return invalid_input(place, "the number of vertices is " + std::to_string(counts.vertices) +
                                     " and the number of samples is " + std::to_string(counts.samples) +
-                                    ", but both must be at least 1");
+                                    ", but both must be at least 1; export the file again");
   const std::uint64_t left = file_size - begin;
   const auto vertices = static_cast<std::uint64_t>(counts.vertices);
   const auto samples = static_cast<std::uint64_t>(counts.samples);

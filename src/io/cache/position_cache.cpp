@@ -17,15 +17,16 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
                                          ", but the mesh " + mesh_name + " has " + grouped(faces.vertex_count()) +
                                          "; give the mesh that the cache was made for");
   if (cache.samples.size() < 2)
-    return invalid_input(
-        cache_name, "a motion needs at least two samples, but the cache has " + std::to_string(cache.samples.size()));
+    return invalid_input(cache_name, "a motion needs at least two samples, but the cache has " +
+                                         std::to_string(cache.samples.size()) + "; export more frames");
   for (std::size_t k = 1; k < cache.samples.size() && kind != MotionKind::kTargets; ++k) {
     const double before = cache.samples[k - 1].time, time = cache.samples[k].time;
     const bool is_jump = kind == MotionKind::kAnimation && before == time;
     if (!(before < time) && !is_jump)
       return invalid_input(cache_name + ", sample " + std::to_string(k),
                            "the time of this sample, " + rounded_text(time, {before}) + " s, is not later than " +
-                               rounded_text(before, {time}) + " s, the time of sample " + std::to_string(k - 1));
+                               rounded_text(before, {time}) + " s, the time of sample " + std::to_string(k - 1) +
+                               "; give each sample a later time than the one before");
   }
 
   Motion motion;

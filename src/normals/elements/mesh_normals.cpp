@@ -45,7 +45,8 @@ Status check_positions(const Topology& topology, VectorView<const float> positio
   }
   for (std::size_t i = 0; i < positions.count; ++i) {
     if (!is_finite(to_double(positions[i])))
-      return invalid_input(place + ", vertex " + std::to_string(i), "the position is NaN or infinite");
+      return invalid_input(place + ", vertex " + std::to_string(i),
+                           "the position is NaN or infinite; positions must be finite numbers");
   }
   return Success{};
 }

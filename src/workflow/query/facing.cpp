@@ -148,7 +148,8 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const std::string option = view.is_eye ? "--eye" : "--direction";
   for (const Vec3d& v : {view.from, view.to}) {
     if (!is_finite(v) || max_abs(v) > std::numeric_limits<float>::max())
-      return Error{ErrorCode::kUsage, option, "a coordinate is NaN, infinite or too large for float32"};
+      return Error{ErrorCode::kUsage, option,
+                   "a coordinate is NaN, infinite or too large for float32; give finite numbers of at most 3.4e38"};
   }
   if (!view.is_eye && view.from == Vec3d{}) return Error{ErrorCode::kUsage, option, "the direction must not be 0,0,0"};
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);

@@ -106,7 +106,8 @@ Status check_weights(const Motion& motion, std::span<const double> weights) {
     return misuse("the input has " + counted(targets, "target", "targets") + ", but the pose has " +
                   counted(weights.size(), "weight", "weights") + "; give one weight for each target");
   for (std::size_t i = 0; i < targets; ++i) {
-    if (!std::isfinite(weights[i])) return misuse("the weight of target " + std::to_string(i) + " is NaN or infinite");
+    if (!std::isfinite(weights[i]))
+      return misuse("the weight of target " + std::to_string(i) + " is NaN or infinite; give finite weights");
   }
   return Success{};
 }

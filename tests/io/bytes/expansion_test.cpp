@@ -56,8 +56,8 @@ TEST(Expansion, names_the_option_that_allows_what_was_asked_for) {
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(refused.error().text(),
-            "a.npz, positions: an input of 1,000 bytes would need 50,000,001 bytes of memory or output, but the limit "
-            "is 33,554,432; if you trust the file, add --max-expansion 50001");
+            "a.npz, positions: an input of 1,000 bytes would need 50,000,001 bytes of memory or output, which is more "
+            "than the limit of 33,554,432; if you trust the file, add --max-expansion 50001");
   EXPECT_TRUE(Expansion(50001, 1000).check(50000001, "").ok());
   EXPECT_FALSE(Expansion(50000, 1000).check(50000001, "").ok());
 }

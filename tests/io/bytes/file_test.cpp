@@ -125,7 +125,8 @@ TEST(FileBytes, devices_are_refused_but_for_terminals) {
     const Result<FileBytes> file = FileBytes::open(device);
     ASSERT_FALSE(file.ok()) << device;
     EXPECT_EQ(file.error().code, ErrorCode::kFailed);
-    EXPECT_EQ(file.error().text(), device + std::string(": this is a device, whose data may never end; name a file"));
+    EXPECT_EQ(file.error().text(),
+              device + std::string(": this is a device, whose data may never end; name a regular file"));
   }
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0);

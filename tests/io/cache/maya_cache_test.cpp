@@ -63,7 +63,8 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
     return error_text(read_maya_points(header + writer.group("MYCH", chunks), "a.mc"));
   };
   EXPECT_EQ(error_text(read_maya_points("FOR5", "a.mc")),
-            "a.mc, byte 0: this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
+            "a.mc, byte 0: this is not a Maya cache, since it begins neither with FOR4 nor with FOR8; name a .mc or "
+            ".mcx file");
   EXPECT_EQ(error_with(writer.chunk("FVCA", ""), writer.header(0)),
             "a.mc, byte 60: the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE); "
             "export the cache again");
@@ -87,7 +88,7 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
             "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32; scale the mesh down");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
-            "a.mc, byte 136: the channel 'a' has 2 points here, but 1 in earlier samples");
+            "a.mc, byte 136: the channel 'a' has 2 points here, but 1 in earlier samples; export the cache again");
   EXPECT_EQ(error_with(writer.points<float>("a", {}), writer.header(0)),
             "a.mc, byte 92: the channel 'a' has no points; export the cache again");
   std::string bytes = test::small_maya<float>(true);
@@ -125,7 +126,8 @@ TEST(ReadMayaDescription, errors_say_where_and_what) {
             "name the .xml file that Maya wrote");
   EXPECT_NE(error_with("OneFile", "TwoFiles").find("Type of cacheType is 'TwoFiles'"), std::string::npos);
   EXPECT_NE(error_with("mcc", "abc").find("Format of cacheType is 'abc'"), std::string::npos);
-  EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be greater than 0"), std::string::npos);
+  EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be greater than 0; export the cache again"),
+            std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate greater than 0"), std::string::npos);
   EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not later than its EndTime; export the cache again"),

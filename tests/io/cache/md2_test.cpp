@@ -61,13 +61,16 @@ TEST(ReadMd2, clips_are_apart) {
 }
 
 TEST(ReadMd2, errors_say_where_and_what) {
-  EXPECT_EQ(error_with(0, "IDP3"), "imp.md2, byte 0: this is not an MD2 file, since it does not begin with IDP2");
-  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; only version 8 can be read");
+  EXPECT_EQ(error_with(0, "IDP3"),
+            "imp.md2, byte 0: this is not an MD2 file, since it does not begin with IDP2; name an .md2 file");
+  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; export the file as version 8");
   EXPECT_EQ(error_with(16, "\x35"),
             "imp.md2, byte 16: the size of a frame in the header is 53, but 3 vertices take 52 bytes");
   EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the number of vertices is 0, but must be at least 1");
-  EXPECT_EQ(error_with(32, "\0"s), "imp.md2, byte 32: the number of triangles is 0, but a motion needs at least 1");
-  EXPECT_EQ(error_with(40, "\1"), "imp.md2, byte 40: the number of frames is 1, but a motion needs at least 2");
+  EXPECT_EQ(error_with(32, "\0"s),
+            "imp.md2, byte 32: the number of triangles is 0, but must be at least 1; export at least one triangle");
+  EXPECT_EQ(error_with(40, "\1"),
+            "imp.md2, byte 40: the number of frames is 1, but must be at least 2; export at least two frames");
   EXPECT_EQ(error_with(40, "\xFF\xFF\xFF\x7F"),
             "imp.md2, byte 56: the file is cut off, since it should have 2,147,483,647 frames from byte 80 on, but has "
             "only 184 bytes");

@@ -41,7 +41,7 @@ TEST(ReadMdd, errors_say_where_and_what) {
             "walk.mdd, byte 3: the file is cut off inside its header of 8 bytes; copy or export it again");
   EXPECT_EQ(error_of(patched(4, "\x80\0\0\0"s)),
             "walk.mdd, byte 8: the number of vertices is -2147483648 and the number of samples is 2, but both must be "
-            "at least 1");
+            "at least 1; export the file again");
   EXPECT_EQ(
       error_of(patched(4, "\x7F\xFF\xFF\xFF")),
       "walk.mdd, byte 8: the file is too short for the 2 samples of 2,147,483,647 vertices in its header; copy or "
@@ -57,7 +57,8 @@ TEST(ReadMdd, errors_say_where_and_what) {
   EXPECT_TRUE(layout(16).ok());
   EXPECT_EQ(layout(15).error().text(),
             "walk.mdd, byte 15: the file is cut off inside the times of its samples; copy or export it again");
-  EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is NaN or infinite");
+  EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)),
+            "walk.mdd, byte 12, sample 1: the time is NaN or infinite; times must be finite numbers");
   EXPECT_EQ(error_of(patched(20, "\xFF\xC0\0\0"s)),
             "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is NaN or infinite; export the file again");
 }

@@ -164,14 +164,14 @@ TEST(ReadNpz, errors_name_array_and_element) {
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(2,)"), std::string(8, '\0')))),
             "walk.npz, sample 1: the time of this sample, 0 s, is not later than 0 s, the time of sample 0");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f8", "(2,)"), raw<double>({0, 1.0 / 0.0})))),
-            "walk.npz, times[1]: the time is NaN or infinite");
+            "walk.npz, times[1]: the time is NaN or infinite; times must be finite numbers");
 }
 
 TEST(ReadNpz, missing_and_doubled_arrays_are_errors) {
   EXPECT_EQ(error_of(test::zip({{"positions.npy", kPositions}})),
-            "walk.npz, faces: the file has no array of this name, only positions");
+            "walk.npz, faces: the file has no array of this name, only positions; save the array under this name");
   EXPECT_EQ(error_of(test::zip({})),
-            "walk.npz, positions: the file has no array of this name, and no other array either");
+            "walk.npz, positions: the file has no array of this name; save the array under this name");
   EXPECT_NE(error_of(test::zip({{"a.npy", "1"}, {"a.npy", "1"}})).find("has the array 'a.npy' twice"),
             std::string::npos);
 }
@@ -333,7 +333,8 @@ TEST(ReadNpz, kind_is_a_string_of_numpy) {
             "walk.npz, kind: kind must be sequence, targets or animation, but is 'star'");
   EXPECT_EQ(error_of(with_kind(npy(npy_header("<i4", "()"), raw<std::int32_t>({1})))),
             "walk.npz, kind: the array must be a single text, but is () of '<i4'");
-  EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))), "walk.npz, kind: the text must be ASCII");
+  EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))),
+            "walk.npz, kind: the text must be ASCII; save it again without other characters");
   EXPECT_FALSE(error_of(with_kind(npy(npy_header("<U7", "()"), "targets"))).empty());
 }
 

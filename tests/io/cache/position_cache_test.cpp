@@ -41,7 +41,8 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
   EXPECT_EQ(
       error_of(4, cache_at({0, 1})),
       "walk.pc2: the cache has 3 vertices, but the mesh body.obj has 4; give the mesh that the cache was made for");
-  EXPECT_EQ(error_of(3, cache_at({0})), "walk.pc2: a motion needs at least two samples, but the cache has 1");
+  EXPECT_EQ(error_of(3, cache_at({0})),
+            "walk.pc2: a motion needs at least two samples, but the cache has 1; export more frames");
   EXPECT_EQ(error_of(3, cache_at({0, 1, 1})),
             "walk.pc2, sample 2: the time of this sample, 1 s, is not later than 1 s, the time of sample 1");
   EXPECT_EQ(error_of(3, cache_at({0, -0.5})),
@@ -51,7 +52,9 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
 TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {
   PositionCache cache = cache_at({0, 1});
   cache.samples[1].positions[4] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(error_of(3, std::move(cache)), "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is NaN or infinite");
+  EXPECT_EQ(
+      error_of(3, std::move(cache)),
+      "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is NaN or infinite; positions must be finite numbers");
 }
 
 TEST(MotionFromCache, looks_at_positions_only_where_there_are_some) {

@@ -295,7 +295,7 @@ TEST(ReadSequence, error_inside_a_file_has_the_frame_in_its_place) {
   };
   const Error line = second("w_1.obj", "v 0 0 0\nv nan 0 0\n");
   EXPECT_EQ(line.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(line.text(), "frame 1 (w_1.obj), line 2: x of vertex 1: 'nan' is NaN or infinite");
+  EXPECT_EQ(line.text(), "frame 1 (w_1.obj), line 2: x of vertex 1: 'nan' is NaN or infinite; write a finite number");
   const std::string ply = test::small_binary_ply(false);
   const Error byte = second("w_1.ply", ply.substr(0, ply.size() - 1));
   EXPECT_TRUE(byte.place.starts_with("frame 1 (w_1.ply), byte ")) << byte.text();

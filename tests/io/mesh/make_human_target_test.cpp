@@ -102,13 +102,14 @@ TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong
   const std::string at = "a.target, line 2: ";
   EXPECT_EQ(second_line("x 1 1 1"), at + "'x' is not an index; a line must have an index and three numbers");
   EXPECT_EQ(second_line("1.5 1 1 1"), at + "'1.5' is not an index; a line must have an index and three numbers");
-  EXPECT_EQ(second_line("1"), at + "x of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 1"), at + "z of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 1 # 1"), at + "z of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 y 1"), at + "y of vertex 1: 'y' is not a number");
-  EXPECT_EQ(second_line("1 nan 1 1"), at + "x of vertex 1: 'nan' is NaN or infinite");
-  EXPECT_EQ(second_line("1 1 -inf 1"), at + "y of vertex 1: '-inf' is NaN or infinite");
-  EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of vertex 1: '1e39' is too large for float32");
+  EXPECT_EQ(second_line("1"), at + "x of vertex 1: a number is missing here; add it, or export the file again");
+  EXPECT_EQ(second_line("1 1 1"), at + "z of vertex 1: a number is missing here; add it, or export the file again");
+  EXPECT_EQ(second_line("1 1 1 # 1"), at + "z of vertex 1: a number is missing here; add it, or export the file again");
+  EXPECT_EQ(second_line("1 1 y 1"),
+            at + "y of vertex 1: 'y' is not a valid number here; correct it, or export the file again");
+  EXPECT_EQ(second_line("1 nan 1 1"), at + "x of vertex 1: 'nan' is NaN or infinite; write a finite number");
+  EXPECT_EQ(second_line("1 1 -inf 1"), at + "y of vertex 1: '-inf' is NaN or infinite; write a finite number");
+  EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of vertex 1: '1e39' is too large for float32; write a smaller number");
   EXPECT_EQ(second_line("1 1 1 1 1"),
             at + "the line has '1' after the delta of vertex 1, but must have only an index and three numbers");
   EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file; remove one of them");

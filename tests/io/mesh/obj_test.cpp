@@ -118,10 +118,14 @@ TEST(ReadObj, numbers_of_any_length_are_those_of_strtof) {
 }
 
 TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
-  EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"), "walk.obj, line 3: y of vertex 1: 'nan' is NaN or infinite");
-  EXPECT_EQ(error_of("v 0 0\n"), "walk.obj, line 1: z of vertex 0: a number is missing");
-  EXPECT_EQ(error_of("v 0 0 1.5x\n"), "walk.obj, line 1: z of vertex 0: '1.5x' is not a number");
-  EXPECT_EQ(error_of("v 1e39 0 0\n"), "walk.obj, line 1: x of vertex 0: '1e39' is too large for float32");
+  EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"),
+            "walk.obj, line 3: y of vertex 1: 'nan' is NaN or infinite; write a finite number");
+  EXPECT_EQ(error_of("v 0 0\n"),
+            "walk.obj, line 1: z of vertex 0: a number is missing here; add it, or export the file again");
+  EXPECT_EQ(error_of("v 0 0 1.5x\n"),
+            "walk.obj, line 1: z of vertex 0: '1.5x' is not a valid number here; correct it, or export the file again");
+  EXPECT_EQ(error_of("v 1e39 0 0\n"),
+            "walk.obj, line 1: x of vertex 0: '1e39' is too large for float32; write a smaller number");
   for (const char* const word : {"inf",
                                  "-inf",
                                  "+nan",
@@ -181,7 +185,9 @@ TEST(ReadObj, file_without_vertices_or_faces_is_an_error) {
 }
 
 TEST(ReadObj, strange_bytes_do_not_reach_the_message) {
-  EXPECT_EQ(error_of(std::string("v \x1b[31m\xff 0 0\n")), "walk.obj, line 1: x of vertex 0: '?[31m?' is not a number");
+  EXPECT_EQ(
+      error_of(std::string("v \x1b[31m\xff 0 0\n")),
+      "walk.obj, line 1: x of vertex 0: '?[31m?' is not a valid number here; correct it, or export the file again");
   EXPECT_LT(error_of(std::string("v ").append(100000, 'a')).size(), 120U);
 }
 
@@ -272,8 +278,10 @@ TEST(ReadObjShading, is_empty_where_the_file_says_nothing) {
 
 TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is NaN or infinite");
-  EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"), "walk.obj, line 2: z of normal 1: a number is missing");
+  EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three),
+            "walk.obj, line 1: y of normal 0: 'nan' is NaN or infinite; write a finite number");
+  EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"),
+            "walk.obj, line 2: z of normal 1: a number is missing here; add it, or export the file again");
   EXPECT_EQ(shading_error_of(three + "f 1 2 4\n"), error_of(three + "f 1 2 4\n"));
   // The reader complains about invalid normals only if the caller asks for normals.
   EXPECT_EQ(error_of(three + "vn 0 nan\ns\nf 1//0 2//99 3//99999999999999999999\n"), "no error");

@@ -276,7 +276,7 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
   const auto with = [](const std::string& what, const std::string& by) {
     return error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, what, by));
   };
-  EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite");
+  EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite; write a finite number");
   // The numbers of a row may continue in the next line. If a row has one number too few, the reader therefore finds the
   // error only in the next line.
   EXPECT_EQ(
@@ -285,7 +285,8 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
   EXPECT_EQ(
       with("1 0 0", "1 0 0 0"),
       "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row; export the file again");
-  EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large for float32");
+  EXPECT_EQ(with("1 0 0", "1 0 1e39"),
+            "walk.ply, line 11, vertex 1: '1e39' is too large for float32; write a smaller number");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
             "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
@@ -294,7 +295,8 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
       with("4 0 1", "2 0 1"),
       "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row; export the file again");
   EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has a negative length, -4");
-  EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"), "walk.ply, line 14, face 0: '1.0' is not a number");
+  EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"),
+            "walk.ply, line 14, face 0: '1.0' is not a valid number here; correct it, or export the file again");
   EXPECT_EQ(error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, "4 0 1 2 3\n", "          ")),
             "walk.ply, line 15, face 1: the file is cut off here, before this row; copy or export it again");
 }

@@ -210,7 +210,7 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
   MeshNormals normals = normals_of({}).value();
   const std::vector<float> before = normals_at(normals, 0.5), few(15);
   EXPECT_EQ(text_of(normals.set_segment(view(kFrom), view(broken))),
-            "keyframe 1, vertex 4: the position is NaN or infinite");
+            "keyframe 1, vertex 4: the position is NaN or infinite; positions must be finite numbers");
   EXPECT_EQ(text_of(normals.begin_segment(view(few), view(kTo))),
             "keyframe 0: the keyframe has 5 positions, but the mesh has 6 vertices");
   EXPECT_EQ(normals_at(normals, 0.5), before);
