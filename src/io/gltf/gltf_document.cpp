@@ -212,7 +212,8 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   if (Status is_other = check_kind(bytes, binary::place(name, 0), "gltf"); !is_other) return is_other.error();
   if (is_glb_extension(lower_extension(name)) && !recognises(bytes.substr(0, 512)))
     return invalid_input(binary::place(name, 0),
-                         "this is not a glTF file, since it begins neither with the word glTF (GLB) nor with { (JSON)");
+                         "this is not a glTF file, since it begins neither with the word glTF (GLB) nor with { (JSON); "
+                         "name a .glb or .gltf file");
   if (is_glb(bytes)) {
     Result<GlbChunks> found = read_glb(bytes, name);
     if (!found) return found.error();
@@ -247,7 +248,8 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     if (source.indices && geometry.corners.size() != declared.element_count)
       return invalid_input(bytes.place(pointer + "/indices"),
                            "the accessor declares " + counted(declared.element_count, "index", "indices") +
-                               ", but the Draco data have " + grouped(geometry.corners.size()));
+                               ", but the Draco data have " + grouped(geometry.corners.size()) +
+                               "; export the file again");
   } else {
     if (source.indices) {
       Result<std::vector<std::uint32_t>> indices = bytes.indices(*source.indices, vertex_count);
@@ -299,7 +301,8 @@ Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, 
   }
   return invalid_input(place, "the " + counted(vertices, "vertex", "vertices") + " and " +
                                   counted(targets, "target", "targets") + " of this primitive would need more than " +
-                                  counted(most_bytes, "byte", "bytes") + " of memory");
+                                  counted(most_bytes, "byte", "bytes") +
+                                  " of memory; split the mesh, or remove targets");
 }
 
 Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
@@ -349,7 +352,7 @@ Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_inde
 
   constexpr std::size_t kMostNamed = 20;
   std::string message = "the file has no animation '" + name_or_index + "'";
-  if (all.empty()) message += ", and no other animation either; leave out --animation";
+  if (all.empty()) message += " and no other animation; leave --animation out";
   for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i)
     message.append(i == 0 ? "; choose one of " : ", ").append(std::to_string(i)).append(" ").append(all[i].name);
   if (all.size() > kMostNamed) message += ", ...";

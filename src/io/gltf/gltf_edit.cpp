@@ -54,12 +54,13 @@ bool is_same_folder(const std::string& a, const std::string& b) {
 std::string value_fault(const std::string& json, std::size_t level) {
   constexpr const char* kNone = "the new value is not valid JSON: ";
   // The parser would take a zero byte for the end of the text, and would skip a byte order mark.
-  if (json.find('\0') != std::string::npos) return std::string(kNone).append("the text has a zero byte");
-  if (json.starts_with(kByteOrderMark)) return std::string(kNone).append("the text begins with a byte order mark");
+  if (json.find('\0') != std::string::npos) return std::string(kNone).append("it has a zero byte; remove this byte");
+  if (json.starts_with(kByteOrderMark))
+    return std::string(kNone).append("it begins with a byte order mark; remove this mark");
   const Result<nlohmann::json> parsed = parse_json(json, "", 0, {"", [](std::size_t, const nlohmann::json&) {}});
   if (!parsed) return std::string(kNone).append(parsed.error().message);
   if (level + json_depth(json) > kDeepestJson)
-    return "the new value is nested deeper than " + std::to_string(kDeepestJson) + " levels";
+    return "the new value is nested deeper than " + std::to_string(kDeepestJson) + " levels; nest it less";
   return "";
 }
 
@@ -74,7 +75,9 @@ Status GltfEdit::State::apply(const Change& change, JsonText& json) const {
   if (tokens->size() == 1) {
     const std::string& name = tokens->front();
     if (name == "accessors" || name == "bufferViews" || name == "buffers")
-      return error("accessors, bufferViews and buffers cannot be changed as JSON; add an array instead");
+      return error(
+          "accessors, bufferViews and buffers cannot be changed as JSON; add a new array with add_vectors() or "
+          "add_scalars()");
   }
   std::string fault = value_fault(change.json, tokens->size() + (change.append ? 1 : 0));
   for (const std::string& token : *tokens) {

@@ -160,11 +160,12 @@ class Assembly {
       return invalid_input(document_.name(), counted(keyframes, "keyframe", "keyframes") + " of " +
                                                  counted(vertex_count_, "vertex", "vertices") +
                                                  " would need more than " + counted(most_bytes, "byte", "bytes") +
-                                                 " of memory");
+                                                 " of memory; split the mesh, or remove targets");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(document_.name(), "the mesh has too many vertices; the most that can be read is " +
-                                                 std::to_string(std::numeric_limits<std::uint32_t>::max() / 3));
+      return invalid_input(document_.name(), "the mesh has more than the " +
+                                                 std::to_string(std::numeric_limits<std::uint32_t>::max() / 3) +
+                                                 " vertices that can be read; split the mesh");
     return Success{};
   }
 
@@ -499,8 +500,8 @@ class AnimationReader {
 
   [[nodiscard]] Error too_many_pieces() const {
     return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                         "the animation bends too much between its keys, and would need more than " +
-                             std::to_string(kMostPieces) + " straight pieces");
+                         "the animation bends too much between its keys, so it would need more than " +
+                             std::to_string(kMostPieces) + " straight pieces; add keys to the animation");
   }
 
   // Returns the number of pieces, from `fewest` to `most`, into which an interval between two keys is cut, so that the

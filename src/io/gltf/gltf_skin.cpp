@@ -44,9 +44,9 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
   const gltf::Model& model = state.model;
   const std::optional<std::uint32_t> index = model.nodes[node].skin;
   if (!index || *index >= model.skins.size())
-    return invalid_input(
-        state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
-        "there is no skin with this index; the file has " + counted(model.skins.size(), "skin", "skins"));
+    return invalid_input(state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
+                         "the node refers to a skin that does not exist, since the file has only " +
+                             counted(model.skins.size(), "skin", "skins") + "; export the file again");
   const gltf::SkinSource& source = model.skins[*index];
   if (source.fault) return *source.fault;
   GltfSkin skin;
@@ -58,8 +58,9 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
     for (std::size_t j = 0; j < source.joints.size(); ++j) {
       const float* const m = numbers.value().data() + 16 * j;
       if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-        return invalid_input(state.bytes.accessor_place(*source.inverse_binds),
-                             "the last row of matrix " + std::to_string(j) + " must be 0, 0, 0, 1");
+        return invalid_input(
+            state.bytes.accessor_place(*source.inverse_binds),
+            "the last row of matrix " + std::to_string(j) + " must be 0, 0, 0, 1; export the file again");
       const auto column = [m](std::size_t c) { return to_double(Vec3f{m[4 * c], m[4 * c + 1], m[4 * c + 2]}); };
       skin.inverse_binds_[j] = {{column(0), column(1), column(2)}, column(3)};
     }
@@ -170,7 +171,8 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
         if (joint >= joints_.size())
           return invalid_input(state.bytes.place(pointer + "/JOINTS_" + std::to_string(n)),
                                "vertex " + std::to_string(v) + " follows joint " + std::to_string(joint) +
-                                   ", but the skin has only " + counted(joints_.size(), "joint", "joints"));
+                                   ", but the skin has only " + counted(joints_.size(), "joint", "joints") +
+                                   "; export the file again");
         shares.push_back({joint, share});
       }
     }

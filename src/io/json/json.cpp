@@ -211,8 +211,9 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)
-    return invalid_input(binary::place(name, offset + scan.too_deep),
-                         "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels");
+    return invalid_input(
+        binary::place(name, offset + scan.too_deep),
+        "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels; nest them less");
   // The library refuses numbers that are too large for double, so null replaces them here. The shortest such number is
   // 1e309, so there is always room for "null".
   std::string replaced;
@@ -286,7 +287,7 @@ std::optional<std::size_t> JsonView::as_count(std::size_t most) const {
   } else if (value_->is_number_float()) {
     const double number = value_->get<double>();
     if (std::isinf(number)) {
-      complain("the number is too large for a double");
+      complain("the number is too large for a double; use a smaller number");
       return std::nullopt;
     }
     if (!(number >= 0 && number <= kLargestExact && number == std::floor(number))) {
@@ -302,7 +303,7 @@ std::optional<std::size_t> JsonView::as_count(std::size_t most) const {
     return std::nullopt;
   }
   if (result > most) {
-    complain(std::to_string(result) + " is too large; the largest allowed value is " + std::to_string(most));
+    complain(std::to_string(result) + " is too large; use a value of at most " + std::to_string(most));
     return std::nullopt;
   }
   return result;
@@ -327,7 +328,7 @@ std::optional<std::size_t> JsonView::as_index(std::size_t count, const char* wha
   const std::optional<std::size_t> index = as_count(~std::size_t{0});
   if (!index) return std::nullopt;
   if (*index < count) return index;
-  complain("the index is " + std::to_string(*index) + ", but the number of " + what + " is only " +
+  complain("the index is " + std::to_string(*index) + ", but must be less than the number of " + what + ", which is " +
            std::to_string(count));
   return std::nullopt;
 }
@@ -369,7 +370,7 @@ std::string JsonView::required_text(const char* key) const {
 double JsonView::as_number() const {
   if (value_->is_number()) {
     const double number = value_->get<double>();
-    if (std::isinf(number)) complain("the number is too large for a double");
+    if (std::isinf(number)) complain("the number is too large for a double; use a smaller number");
     return number;
   }
   complain("the value must be a number, not " + article(*value_));

@@ -253,7 +253,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
   const auto error = [&](std::string message) { return invalid_input(std::string(pointer), std::move(message)); };
   const auto tokens = split_json_pointer(pointer);
   if (!tokens) return error("this is not a JSON pointer; write one like /meshes/0/extras");
-  if (tokens->empty() && !append) return error("the whole document cannot be replaced; name a member of it");
+  if (tokens->empty() && !append)
+    return error("the whole document cannot be replaced; point to a member of it, such as /meshes/0/extras");
   value.erase(0, skip_blanks(value, 0));
   value.resize(value.find_last_not_of(kBlanks) + 1);
 
@@ -263,7 +264,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     Node& node = *way.back();
     const std::string& token = (*tokens)[i];
     if (!node.is_container())
-      return error("only an object or an array can have a member '" + token + "', and this value is neither");
+      return error("only an object or an array can have a member '" + token +
+                   "', and this value is neither; correct the pointer");
     last = find_member(node, token);
     if (last != nullptr) {
       if (!last->value) last->value = std::make_unique<Node>(last->text);
@@ -283,7 +285,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
 
   Node& node = *way.back();
   if (append) {
-    if (node.text.front() != '[') return error("a value can only be added to an array, but this is not one");
+    if (node.text.front() != '[')
+      return error("a value can only be added to an array, but the pointer leads to another value; point to an array");
     node.expand();
     add_member(node, "", std::move(value));
   } else {

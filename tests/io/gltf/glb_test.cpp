@@ -43,7 +43,7 @@ TEST(ReadGlb, finds_the_chunks_and_what_follows_them) {
 TEST(ReadGlb, errors_say_where_and_what) {
   const std::string json = chunk("JSON", "{}  ");
   EXPECT_EQ(error_of("{\"asset\": {\"version\": \"2.0\"}}"),
-            "a.glb, byte 0: this is not a GLB file, since it does not begin with the word glTF");
+            "a.glb, byte 0: this is not a GLB file, since it does not begin with the word glTF; export the file again");
   EXPECT_EQ(error_of(glb("")),
             "a.glb, byte 12: the file is cut off inside its header of 20 bytes; copy or export it again");
   EXPECT_EQ(error_of(glb(json + "1234")),

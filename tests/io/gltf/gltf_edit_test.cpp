@@ -149,12 +149,14 @@ TEST(GltfEdit, number_beyond_double_is_kept_and_refused_where_it_is_read) {
   EXPECT_EQ(error_with("/extras", {1, "?", nullptr}), "");
   EXPECT_EQ(error_with("/nodes/0/extras", "?"), "");
   EXPECT_EQ(error_with("/meshes/0/weights", {0, "?"}),
-            "a.gltf, /meshes/0/weights/1: the number is too large for a double");
+            "a.gltf, /meshes/0/weights/1: the number is too large for a double; use a smaller number");
   EXPECT_EQ(error_with("/nodes/0/scale", {1, "?", 1}),
-            "a.gltf, /nodes/0/scale/1: the number is too large for a double");
-  EXPECT_EQ(error_with("/accessors/0/count", "?"), "a.gltf, /accessors/0/count: the number is too large for a double");
-  EXPECT_EQ(error_with("/meshes/0/primitives/0/attributes/POSITION", "?"),
-            "a.gltf, /meshes/0/primitives/0/attributes/POSITION: the number is too large for a double");
+            "a.gltf, /nodes/0/scale/1: the number is too large for a double; use a smaller number");
+  EXPECT_EQ(error_with("/accessors/0/count", "?"),
+            "a.gltf, /accessors/0/count: the number is too large for a double; use a smaller number");
+  EXPECT_EQ(
+      error_with("/meshes/0/primitives/0/attributes/POSITION", "?"),
+      "a.gltf, /meshes/0/primitives/0/attributes/POSITION: the number is too large for a double; use a smaller number");
   EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: the value must be a string, not a number");
 }
 
@@ -288,28 +290,31 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
     return bytes.error().message;
   };
   EXPECT_EQ(error_of("/meshes/0/name/x", "1", false),
-            "only an object or an array can have a member 'x', and this value is neither");
+            "only an object or an array can have a member 'x', and this value is neither; correct the pointer");
   EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 item, and no item 1");
-  EXPECT_EQ(error_of("/meshes/0/name", "1", true), "a value can only be added to an array, but this is not one");
+  EXPECT_EQ(error_of("/meshes/0/name", "1", true),
+            "a value can only be added to an array, but the pointer leads to another value; point to an array");
   EXPECT_EQ(error_of("meshes", "1", false), "this is not a JSON pointer; write one like /meshes/0/extras");
-  EXPECT_EQ(error_of("", "{}", false), "the whole document cannot be replaced; name a member of it");
+  EXPECT_EQ(error_of("", "{}", false),
+            "the whole document cannot be replaced; point to a member of it, such as /meshes/0/extras");
   for (const char* const pointer : {"/accessors", "/bufferViews", "/buffers"})
     EXPECT_EQ(error_of(pointer, "{}", true),
-              "accessors, bufferViews and buffers cannot be changed as JSON; add an array instead");
+              "accessors, bufferViews and buffers cannot be changed as JSON; add a new array with add_vectors() or "
+              "add_scalars()");
   for (const char* const json : {"", "nothing", "1,2", "\"", "{\"a\":1", "1}", "\"\xFF\"", "\n"})
     EXPECT_TRUE(error_of("/extras", json, false).starts_with("the new value is not valid JSON")) << json;
-  EXPECT_TRUE(error_of("/extras", std::string("1\0", 2), false).ends_with("the text has a zero byte"));
+  EXPECT_TRUE(error_of("/extras", std::string("1\0", 2), false).ends_with("it has a zero byte; remove this byte"));
   EXPECT_TRUE(error_of("/extras",
                        "\xEF\xBB\xBF"
                        "1",
                        false)
-                  .ends_with("the text begins with a byte order mark"));
+                  .ends_with("it begins with a byte order mark; remove this mark"));
   EXPECT_EQ(GltfFixture("\xEF\xBB\xBF\xEF\xBB\xBF" + test::quad_document().gltf()).error(),
             "a.gltf, byte 3: the JSON is not valid: it has a second byte order mark");
   EXPECT_TRUE(error_of("/extras/\xFF", "1", false).starts_with("the new value is not valid JSON"));
   const auto deep = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
-  EXPECT_EQ(error_of("/extras", deep(256), false), "the new value is nested deeper than 256 levels");
-  EXPECT_EQ(error_of("/extras", deep(255), true), "the new value is nested deeper than 256 levels");
+  EXPECT_EQ(error_of("/extras", deep(256), false), "the new value is nested deeper than 256 levels; nest it less");
+  EXPECT_EQ(error_of("/extras", deep(255), true), "the new value is nested deeper than 256 levels; nest it less");
   GltfEdit edit(*fixture);
   edit.set("/extras", deep(255));
   EXPECT_EQ(GltfFixture(bytes_or_error(edit)).error(), "");

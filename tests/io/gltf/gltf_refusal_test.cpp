@@ -409,7 +409,8 @@ TEST(GltfRefusals, a_bin_chunk_has_the_bytes_of_the_buffer_and_at_most_three_mor
   ASSERT_EQ(size % 4, 0U);
   EXPECT_EQ(error_with(size), "");
   EXPECT_EQ(error_with(size + 1), "a.gltf, /buffers/0/byteLength: the BIN chunk has only " + std::to_string(size) +
-                                      " bytes, but byteLength is " + std::to_string(size + 1));
+                                      " bytes, but byteLength is " + std::to_string(size + 1) +
+                                      "; export the file again");
 }
 
 }  // namespace

@@ -168,27 +168,31 @@ struct Case {
 TEST(GltfSkin, every_fault_is_told_with_its_place) {
   const std::string attributes = "a.gltf, /meshes/0/primitives/0/attributes";
   const std::vector<Case> cases = {
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1 skin",
+      {"a.gltf, /nodes/0/skin: the node refers to a skin that does not exist, since the file has only 1 skin; export "
+       "the file again",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = 1; }},
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1 skin",
+      {"a.gltf, /nodes/0/skin: the node refers to a skin that does not exist, since the file has only 1 skin; export "
+       "the file again",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = "first"; }},
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 0 skins",
+      {"a.gltf, /nodes/0/skin: the node refers to a skin that does not exist, since the file has only 0 skins; export "
+       "the file again",
        [](Skinned& s) { s.builder.json["skins"] = Json::object(); }},
       {"a.gltf, /skins/0: the value must be an object, not a number",
        [](Skinned& s) { s.builder.json["skins"] = {5}; }},
-      {"a.gltf, /skins/0/joints: the skin has no joints",
+      {"a.gltf, /skins/0/joints: the skin has no joints; export the file again",
        [](Skinned& s) { s.builder.json["skins"][0].erase("joints"); }},
-      {"a.gltf, /skins/0/joints/1: the index is 3, but the number of nodes is only 3",
+      {"a.gltf, /skins/0/joints/1: the index is 3, but must be less than the number of nodes, which is 3",
        [](Skinned& s) {
          s.builder.json["skins"][0]["joints"] = {1, 3};
        }},
-      {"a.gltf, /skins/0/inverseBindMatrices: the accessor has 1 matrix, but the skin has 2 joints",
+      {"a.gltf, /skins/0/inverseBindMatrices: the accessor has 1 matrix, but the skin has 2 joints; export the file "
+       "again",
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1);
        }},
       {"a.gltf, /skins/0/inverseBindMatrices: accessor 0 must be of type MAT4",
        [](Skinned& s) { s.builder.json["skins"][0]["inverseBindMatrices"] = 0; }},
-      {"a.gltf, /accessors/6: the last row of matrix 1 must be 0, 0, 0, 1",
+      {"a.gltf, /accessors/6: the last row of matrix 1 must be 0, 0, 0, 1; export the file again",
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}, 2);
        }},
@@ -203,25 +207,27 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
          s.attributes().erase("JOINTS_0");
          s.attributes().erase("WEIGHTS_0");
        }},
-      {attributes + ": the primitive has JOINTS_0 but no WEIGHTS_0",
+      {attributes + ": the primitive has JOINTS_0 but no WEIGHTS_0; export the file again",
        [](Skinned& s) { s.attributes().erase("WEIGHTS_0"); }},
-      {attributes + ": the primitive has WEIGHTS_0 but no JOINTS_0",
+      {attributes + ": the primitive has WEIGHTS_0 but no JOINTS_0; export the file again",
        [](Skinned& s) { s.attributes().erase("JOINTS_0"); }},
-      {attributes + "/JOINTS_0: vertex 2 follows joint 2, but the skin has only 2 joints",
+      {attributes + "/JOINTS_0: vertex 2 follows joint 2, but the skin has only 2 joints; export the file again",
        [](Skinned& s) {
          s.joints(
              s.builder.add_accessor("VEC4", std::vector<std::uint8_t>{0, 1, 9, 9, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0}));
        }},
-      {attributes + "/JOINTS_0: accessor 5 has a componentType that glTF does not allow for this use",
+      {attributes +
+           "/JOINTS_0: accessor 5 has a componentType that glTF does not allow for this use; export the file again",
        [](Skinned& s) { s.joints(5); }},
       {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
-      {attributes + "/WEIGHTS_0: accessor 4 has a componentType that glTF does not allow for this use",
+      {attributes +
+           "/WEIGHTS_0: accessor 4 has a componentType that glTF does not allow for this use; export the file again",
        [](Skinned& s) { s.weights(4); }},
-      {attributes + "/WEIGHTS_0: the accessor has 1 element, but the primitive has 4 positions",
+      {attributes + "/WEIGHTS_0: the accessor has 1 element, but the primitive has 4 positions; export the file again",
        [](Skinned& s) {
          s.weights(s.builder.add_accessor("VEC4", std::vector<float>{1, 0, 0, 0}));
        }},
-      {attributes + "/WEIGHTS_0: accessor 5 ends beyond buffer view 5, which has 64 bytes",
+      {attributes + "/WEIGHTS_0: accessor 5 ends beyond buffer view 5, which has 64 bytes; export the file again",
        [](Skinned& s) { s.builder.json["accessors"][5]["count"] = std::uint64_t{1} << 52U; }},
       {"a.gltf, /accessors/5: element 3 is NaN or infinite; export the file again",
        [](Skinned& s) { s.builder.buffer.replace(s.builder.buffer.size() - 4, 4, "\xFF\xFF\xFF\x7F", 4); }},
@@ -240,7 +246,8 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
 TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
   const std::string sampler = "a.gltf, /animations/0/samplers/0";
   const std::vector<Case> cases = {
-      {sampler + "/output: the output has 3 values for 2 keys, but must have 1 for each key",
+      {sampler +
+           "/output: the output has 3 values for 2 keys, but must have 1 for each key; export the animation again",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3");
        }},
@@ -254,7 +261,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.builder.json["animations"][0]["samplers"][0]["interpolation"] = "CURVED";
        }},
       {"a.gltf, /animations/0/channels/1/target: another channel of this animation drives the scale of the same node; "
-       "remove one of the two",
+       "remove one of the two channels",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
@@ -266,7 +273,8 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.builder.json["nodes"][1].erase("translation");
          s.builder.json["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
        }},
-      {"a.gltf, /animations/0/channels/0/target/node: the index is 9, but the number of nodes is only 3",
+      {"a.gltf, /animations/0/channels/0/target/node: the index is 9, but must be less than the number of nodes, which "
+       "is 3",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["channels"][0]["target"]["node"] = 9;
@@ -417,7 +425,8 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
   const std::size_t view = no_mesh.builder.add_view("none of this is a mesh");
   no_mesh.builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
       {"bufferView", view}, {"attributes", {{"POSITION", 0}, {"JOINTS_0", 1}, {"WEIGHTS_0", 2}}}};
-  EXPECT_TRUE(error_of(no_mesh).starts_with(extension + ": the Draco data cannot be decoded; the decoder says: "))
+  EXPECT_TRUE(error_of(no_mesh).starts_with(
+      extension + ": the Draco data cannot be decoded; export the file again. The decoder says: "))
       << error_of(no_mesh);
 }
 

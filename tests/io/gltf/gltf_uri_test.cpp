@@ -172,24 +172,26 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
   const auto expect_error = [this](const std::string& uri, const std::string& message) {
     EXPECT_EQ(read(uri, false), "a.gltf, /buffers/0/uri: " + message);
   };
-  expect_error("", "the uri is empty or has a broken % code, so it names no file");
+  expect_error("", "the uri is empty or has a broken % code, so it names no file; export the file again");
   expect_error("own%zz.bin", "this file is missing: " + asset_ + "/own%zz.bin");
-  expect_error("own%00.bin", "the uri is empty or has a broken % code, so it names no file");
+  expect_error("own%00.bin", "the uri is empty or has a broken % code, so it names no file; export the file again");
   expect_error(
       "http://localhost/own.bin",
-      "the uri is a web address or another scheme; copy the file beside the glTF file and refer to it by name");
+      "the uri is a web address, not the name of a file; copy the file beside the glTF file and refer to it by name");
   expect_error(asset_ + "/own.bin",
                "the uri is an absolute path, which is refused for safety; if you trust the file, add --allow-external");
   expect_error("up/secret.bin",
                "the uri leads out of the folder of the glTF file, which is refused for safety; if you trust the file, "
                "add --allow-external");
   expect_error("none.bin", "this file is missing: " + asset_ + "/none.bin");
-  expect_error("pipe.bin", asset_ + "/pipe.bin is not a regular file");
-  expect_error("short.bin", "the file has 3 bytes, but byteLength is " + size);
-  expect_error(octets + good.substr(0, 8), "the data URI has fewer than the " + size + " bytes of byteLength");
-  expect_error(octets + "!" + good.substr(1), "the data URI is not valid base64");
+  expect_error("pipe.bin", asset_ + "/pipe.bin is not a regular file; put the file itself there");
+  expect_error("short.bin", "the file has 3 bytes, but byteLength is " + size + "; export the file again");
+  expect_error(octets + good.substr(0, 8),
+               "the data URI has fewer than the " + size + " bytes of byteLength; export the file again");
+  expect_error(octets + "!" + good.substr(1), "the data URI is not valid base64; export the file again");
   expect_error(octets + good.substr(0, good.size() - 1),
-               "the data URI has " + std::to_string(builder_.buffer.size() - 1) + " bytes, but byteLength is " + size);
+               "the data URI has " + std::to_string(builder_.buffer.size() - 1) + " bytes, but byteLength is " + size +
+                   "; export the file again");
   expect_error("data:text/plain;base64," + good,
                "the data URI of a buffer must begin with data:application/octet-stream;base64, or "
                "data:application/gltf-buffer;base64,");

@@ -29,7 +29,7 @@ TEST(PosesFile, errors_say_where) {
            {"[3]",
             "p, /0: a pose must be weights by the names of targets, such as {\"smile\": 1}, or a list of weights"},
            {R"([{}, {"smile": "1"}])", "p, /1/smile: the value must be a number, not a string"},
-           {"[[1, 1e999]]", "p, /0/1: the number is too large for a double"}}) {
+           {"[[1, 1e999]]", "p, /0/1: the number is too large for a double; use a smaller number"}}) {
     const auto poses = parse_poses(text, "p");
     ASSERT_FALSE(poses.ok()) << text;
     EXPECT_EQ(poses.error().text(), message);

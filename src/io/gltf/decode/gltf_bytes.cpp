@@ -97,9 +97,9 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
                                                : "the data of this buffer are missing, since the buffer has no uri and "
                                                  "only buffer 0 may use the BIN chunk; export the file again");
     if (origin_.bin->size() < declared.byte_length)
-      return invalid_input(place(pointer + "/byteLength"), "the BIN chunk has only " +
-                                                               counted(origin_.bin->size(), "byte", "bytes") +
-                                                               ", but byteLength is " + grouped(declared.byte_length));
+      return invalid_input(place(pointer + "/byteLength"),
+                           "the BIN chunk has only " + counted(origin_.bin->size(), "byte", "bytes") +
+                               ", but byteLength is " + grouped(declared.byte_length) + "; export the file again");
     if (origin_.bin->size() - declared.byte_length > 3)
       return invalid_input(place(pointer + "/byteLength"),
                            "the BIN chunk has " + counted(origin_.bin->size(), "byte", "bytes") +
@@ -117,7 +117,8 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
   if (!file) return file.error();
   if (file.value().bytes().size() < declared.byte_length)
     return invalid_input(uri_place, "the file has " + counted(file.value().bytes().size(), "byte", "bytes") +
-                                        ", but byteLength is " + grouped(declared.byte_length));
+                                        ", but byteLength is " + grouped(declared.byte_length) +
+                                        "; export the file again");
   return files_.emplace(index, std::move(file).value()).first->second.bytes();
 }
 
@@ -231,7 +232,8 @@ Status Bytes::for_each_sparse(std::size_t index, const Put& put) {
     if (element < least || element >= accessor.count)
       return invalid_input(accessor_place(index) + "/sparse/indices",
                            "item " + std::to_string(i) + " is " + std::to_string(element) +
-                               ", but sparse indices must ascend and be less than " + std::to_string(accessor.count));
+                               ", but sparse indices must ascend and be less than " + std::to_string(accessor.count) +
+                               "; export the file again");
     least = element + 1;
     put(element, values.value().bytes.data() + sparse.values_offset + i * size);
   }
@@ -300,7 +302,8 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
     if (result[i] >= vertex_count)
       return invalid_input(accessor_place(index), "index " + std::to_string(i) + " refers to vertex " +
                                                       std::to_string(result[i]) + ", but the primitive has only " +
-                                                      counted(vertex_count, "vertex", "vertices"));
+                                                      counted(vertex_count, "vertex", "vertices") +
+                                                      "; export the file again");
   }
   return result;
 }

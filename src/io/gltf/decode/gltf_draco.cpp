@@ -108,7 +108,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
-  std::string reason = "there is no triangle mesh in them; export the file again";
+  std::string reason = "there is no triangle mesh in them";
   try {
     if (const auto faces = declared_faces(buffer)) {
       if (Status status = expansion.check(kBytesPerFace * *faces, place); !status) return status.error();
@@ -127,10 +127,12 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
     reason = exception.what();
   }
   if (!mesh)
-    return invalid_input(place, std::string("the Draco data cannot be decoded; the decoder says: ").append(reason));
+    return invalid_input(
+        place,
+        std::string("the Draco data cannot be decoded; export the file again. The decoder says: ").append(reason));
   if (mesh->num_points() != vertex_count)
     return invalid_input(place, "the Draco data have " + counted(mesh->num_points(), "vertex", "vertices") +
-                                    ", but the accessors declare " + grouped(vertex_count));
+                                    ", but the accessors declare " + grouped(vertex_count) + "; export the file again");
   return mesh;
 }
 
@@ -147,9 +149,9 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
     for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(f))) {
       if (corner.value() >= vertex_count)
-        return invalid_input(place, "face " + std::to_string(f) +
-                                        " of the Draco data refers to a vertex that does not exist, vertex " +
-                                        std::to_string(corner.value()));
+        return invalid_input(place, "face " + std::to_string(f) + " of the Draco data refers to vertex " +
+                                        std::to_string(corner.value()) +
+                                        ", which does not exist; export the file again");
       geometry.corners.push_back(corner.value());
     }
   }

@@ -20,7 +20,8 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
     return invalid_input(binary::place(name, at), std::move(message));
   };
   const auto word = [&](std::size_t at) { return binary::load<std::uint32_t>(bytes.data() + at, std::endian::little); };
-  if (!is_glb(bytes)) return error(0, "this is not a GLB file, since it does not begin with the word glTF");
+  if (!is_glb(bytes))
+    return error(0, "this is not a GLB file, since it does not begin with the word glTF; export the file again");
   if (bytes.size() < kHeaderSize + kChunkHeaderSize)
     return error(bytes.size(), "the file is cut off inside its header of 20 bytes; copy or export it again");
   if (word(4) != 2)

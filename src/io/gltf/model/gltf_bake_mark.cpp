@@ -33,7 +33,7 @@ std::vector<JsonView> items_of(const JsonView& view, const Json& value, const ch
 // Returns true if a term is an array with `size` items, and complains otherwise.
 bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
   if (value.is_array() && value.size() == size) return true;
-  term.complain(std::string("a term must be ") + form);
+  term.complain(std::string("a term must be ") + form + "; bake the original file again");
   return false;
 }
 
@@ -57,14 +57,16 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
-  if (!factors || factors->size() != 2) return item.complain("factors", "factors must be a list of two items");
+  if (!factors || factors->size() != 2)
+    return item.complain("factors", "factors must be a list of two items; bake the original file again");
   std::array<std::optional<std::size_t>, 2> targets;  // no value stands for "base"
   for (std::size_t n = 0; n < 2; ++n) {
     const Json& factor = value["factors"][n];
     if (!factor.is_string())
       targets[n] = factors->item(n).as_index(target_count, "targets").value_or(0);
     else if (factor.get_ref<const std::string&>() != "base")
-      return factors->item(n).complain("a factor must be the index of a target or \"base\"");
+      return factors->item(n).complain(
+          "a factor must be the index of a target or \"base\"; bake the original file again");
   }
   if (targets[0] && targets[1]) {
     extra.quadratic.push_back({*targets[0], *targets[1], 1});
@@ -124,7 +126,8 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   if (version != kVersion && version != kVersionOfFactors)
     view.complain("version", "another version of chronormal has baked this file; bake the original file again");
   const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
-  if (!encoding) view.complain("encode", "encode must be harmless, exact, endpoint or smallest");
+  if (!encoding)
+    view.complain("encode", "encode must be harmless, exact, endpoint or smallest; bake the original file again");
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = read_flag(view, value, "sequence");
   mark.animations_only = read_flag(view, value, "animations_only");

@@ -45,7 +45,8 @@ std::optional<Component> read_component(const JsonView& object) {
   const std::size_t value = object.required_count("componentType", kMostBytes);
   const std::optional<Component> component = to_component(value);
   if (!component)
-    object.complain("componentType", "component type " + std::to_string(value) + " does not exist in glTF 2.0");
+    object.complain("componentType",
+                    "component type " + std::to_string(value) + " does not exist in glTF 2.0; export the file again");
   return component;
 }
 
@@ -100,13 +101,15 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
-  if (!asset) return root.complain("asset", "this is not a glTF 2.0 file, since its JSON has no asset");
+  if (!asset)
+    return root.complain(
+        "asset", "this is not a glTF 2.0 file, since its JSON has no asset; name a glTF file, or export it again");
   // A file may set minVersion to the version of glTF that its readers must support. This reader supports only 2.0.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
   if (!version.starts_with("2."))
-    asset->complain("version", "the file has another version of glTF; export it as glTF 2.0");
+    asset->complain("version", "the file needs another version of glTF than 2.0; export it as glTF 2.0");
   if (!least.empty() && least != "2.0")
-    asset->complain("minVersion", "the file has another version of glTF; export it as glTF 2.0");
+    asset->complain("minVersion", "the file needs another version of glTF than 2.0; export it as glTF 2.0");
   if (const std::optional<JsonView> used = root.array("extensionsUsed")) {
     for (std::size_t i = 0; i < used->size(); ++i) model_.extensions.push_back(used->item(i).as_text());
   }
@@ -180,7 +183,8 @@ void Parser::parse_view(const JsonView& item, BufferView& view) {
   const std::size_t available = model_.buffers[view.buffer].byte_length;
   if (view.offset > available || view.length > available - view.offset)
     return item.complain("the buffer view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
-                         std::to_string(view.buffer) + " has only " + counted(available, "byte", "bytes"));
+                         std::to_string(view.buffer) + " has only " + counted(available, "byte", "bytes") +
+                         "; export the file again");
   if (const std::optional<JsonView> extensions = item.object("extensions")) {
     for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
       const std::optional<JsonView> meshopt = extensions->object(name);
@@ -221,7 +225,8 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const std::size_t available = model_.buffers[result.buffer].byte_length;
   if (result.offset > available || result.length > available - result.offset)
     item.complain("the compressed data end at byte " + std::to_string(result.offset + result.length) + ", but buffer " +
-                  std::to_string(result.buffer) + " has only " + counted(available, "byte", "bytes"));
+                  std::to_string(result.buffer) + " has only " + counted(available, "byte", "bytes") +
+                  "; export the file again");
   const bool of_attributes = result.mode == Mode::kAttributes;
   const bool stride_ok =
       of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
@@ -233,19 +238,21 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const bool filter_ok = result.filter == Filter::kNone ||
                          (of_attributes && (result.filter == Filter::kExponential || result.stride == 8 ||
                                             (result.filter == Filter::kOctahedral && result.stride == 4)));
-  if (!filter_ok) item.complain("filter", "the filter is not allowed with this mode and byteStride");
+  if (!filter_ok)
+    item.complain("filter", "the filter is not allowed with this mode and byteStride; compress the file again");
   if (result.mode == Mode::kTriangles && result.count % 3 != 0)
     item.complain("count", "count must be a multiple of 3 for triangles");
   if (complaint_.first()) return std::nullopt;
   if (result.count > view.length / result.stride || result.count * result.stride != view.length)
     item.complain("count", counted(result.count, "element", "elements") + " of " +
                                counted(result.stride, "byte", "bytes") + (result.count == 1 ? " does" : " do") +
-                               " not fill the buffer view, which has " + counted(view.length, "byte", "bytes"));
+                               " not fill the buffer view, which has " + counted(view.length, "byte", "bytes") +
+                               "; compress the file again");
   // A bit of the compressed data stands for at most 8 bytes of the result, and a byte for at most 64. This check
   // refuses results that are longer than four times as much, because a small file must not ask for much memory.
   if (view.length / 256 > result.length)
     item.complain("byteLength", "the compressed data are too short for the " + counted(view.length, "byte", "bytes") +
-                                    " that they should hold");
+                                    " that they should hold; compress the file again");
   return result;
 }
 
@@ -295,7 +302,7 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   constexpr std::size_t kMostNodes = ~std::uint32_t{0};
   if (complaint_.first()) return;
   const JsonView item(value, node_pointer(index), complaint_);
-  if (index >= kMostNodes) return item.complain("the file has more nodes than can be read");
+  if (index >= kMostNodes) return item.complain("the file has more nodes than can be read; split the file");
   GltfNode& node = model_.nodes.emplace_back();
   node.name = item.text("name");
   node.has_skin = item.has("skin");
@@ -343,15 +350,16 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
   const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
   if (has_matrix) {
     if (has_translation || has_rotation || has_scale)
-      return item.complain("matrix",
-                           "the node has a matrix as well as translation, rotation or scale; remove one of the two");
+      return item.complain(
+          "matrix",
+          "the node has a matrix and also translation, rotation or scale; remove either the matrix or the others");
     const double* m = matrix.data();
     model_.placements.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
   } else if (has_translation || has_rotation || has_scale) {
     const double length = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] +
                                     (rotation[2] * rotation[2] + rotation[3] * rotation[3]));
     if (!(std::fabs(length - 1) < 1e-2))
-      return item.complain("rotation", "the rotation must be a quaternion of length 1");
+      return item.complain("rotation", "the rotation must be a quaternion of length 1; export the file again");
     for (double& component : rotation) component /= length;
     model_.placements.emplace_back(index, NodeTransform{vector(translation.data()), rotation, vector(scale.data())});
   }
@@ -368,9 +376,9 @@ void Parser::check_nodes(const JsonView& root) {
     if (!node.mesh && node.weights.empty()) continue;
     const std::size_t mesh = node.mesh.value_or(0);
     if (node.mesh && mesh >= model_.meshes.size())
-      complaint_.add(node_pointer(i) + "/mesh", "the node refers to mesh " + std::to_string(mesh) +
-                                                    ", but the file has " +
-                                                    counted(model_.meshes.size(), "mesh", "meshes"));
+      complaint_.add(node_pointer(i) + "/mesh",
+                     "the node refers to mesh " + std::to_string(mesh) + ", but the file has " +
+                         counted(model_.meshes.size(), "mesh", "meshes") + "; export the file again");
     else if (!node.weights.empty())
       check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
   }
@@ -413,10 +421,12 @@ void Parser::connect_nodes() {
     const std::string pointer = node_pointer(parent) + "/children";
     if (child >= count)
       return complaint_.add(pointer, "the node refers to node " + std::to_string(child) + ", but the file has " +
-                                         counted(count, "node", "nodes"));
+                                         counted(count, "node", "nodes") + "; export the file again");
     if (model_.nodes[child].parent)
-      return complaint_.add(pointer, "node " + std::to_string(child) +
-                                         " is listed as a child more than once, but a node has at most one parent");
+      return complaint_.add(
+          pointer,
+          "node " + std::to_string(child) +
+              " is listed as a child more than once, but a node has at most one parent; export the file again");
     model_.nodes[child].parent = parent;
   }
   // A walk from a node up through its parents must end at a root. If a walk meets its own path again, the parents form
@@ -460,9 +470,9 @@ std::vector<double> Parser::parse_weights(const JsonView& item) {
 
 void Parser::check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count) {
   if (weights.size() != target_count)
-    complaint_.add(pointer + "/weights", "the list has " + counted(weights.size(), "weight", "weights") +
-                                             ", but the mesh has " +
-                                             counted(target_count, "morph target", "morph targets"));
+    complaint_.add(pointer + "/weights",
+                   "the list has " + counted(weights.size(), "weight", "weights") + ", but the mesh has " +
+                       counted(target_count, "morph target", "morph targets") + "; export the file again");
 }
 
 Placement placement_of(const Model& model, std::size_t node) noexcept {

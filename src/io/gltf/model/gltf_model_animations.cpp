@@ -77,13 +77,14 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
   // The channels of single weights, listed for each node.
   std::map<std::size_t, std::vector<LoneWeight>> lone;
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
-  if (!channels || !samplers) return item.complain("an animation must have channels and samplers");
+  if (!channels || !samplers)
+    return item.complain("an animation must have channels and samplers; remove it, or export the file again");
   animation.channel_count = channels->size();
   const auto read = [&](std::size_t c) {
     const JsonView channel = channels->item(c);
     if (!channel.is_object()) return;
     const std::optional<JsonView> target = channel.object("target");
-    if (!target) return channel.complain("target", "the channel has no target");
+    if (!target) return channel.complain("target", "the channel has no target; remove the channel");
     const std::string path = target->required_text("path");
     Driven driven = path == "pointer" ? pointed_to(*target) : Driven{};
     if (path == "weights" && target->has("node")) {
@@ -92,7 +93,8 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
     if (driven.nodes.empty()) return;
     const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
     if (known.contains(weights))
-      return target->complain("another channel of this animation drives the same weights; remove one of the two");
+      return target->complain(
+          "another channel of this animation drives the same weights; remove one of the two channels");
     for (const std::size_t node : driven.nodes) {
       if (driven.target)
         lone[node].push_back({c, *driven.target});
@@ -152,7 +154,7 @@ void Parser::parse_track(const JsonView& animation, std::size_t channel_index, s
   const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
   if (target_count == 0)
     return channel.object("target")->complain(
-        "node", "the channel drives weights of a node that has no mesh with morph targets");
+        "node", "the channel drives weights of a node that has no mesh with morph targets; remove the channel");
   if (!parse_sampler(animation, channel_index, Use::kWeights, target_count, track, source)) return;
   result.tracks.push_back(track);
   sources.push_back(std::move(source));
@@ -175,7 +177,8 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       return target.complain("the channel drives " + pointer_of(target) +
                              ", which the file does not have; remove the channel");
     if (is_known || (!source.elements.empty() && source.elements.back().target == weight.target))
-      return target.complain("another channel of this animation drives the same weights; remove one of the two");
+      return target.complain(
+          "another channel of this animation drives the same weights; remove one of the two channels");
     GltfTrack of_weight;
     TrackSource read;
     if (!parse_sampler(animation, weight.channel, Use::kWeights, 1, of_weight, read)) return;
@@ -232,7 +235,7 @@ void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChan
     if (!node || found == kPaths.end()) continue;
     if (!known.emplace(*node, found->second).second)
       return target->complain("another channel of this animation drives the " + path +
-                              " of the same node; remove one of the two");
+                              " of the same node; remove one of the two channels");
     if (!std::holds_alternative<NodeTransform>(placement_of(model_, *node)))
       return target->complain("the channel drives the " + path +
                               " of a node that has a matrix; give the node translation, rotation and scale instead");
@@ -261,7 +264,8 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
   else if (!interpolation.empty() && interpolation != "LINEAR")
     sampler.complain("interpolation", "interpolation must be LINEAR, STEP or CUBICSPLINE");
   for (const char* key : {"input", "output"}) {
-    if (!sampler.has(key)) sampler.complain(std::string("the sampler has no ").append(key));
+    if (!sampler.has(key))
+      sampler.complain(std::string("the sampler has no ").append(key).append("; export the file again"));
   }
   const std::optional<std::size_t> input = parse_use(sampler, "input", Use::kTimes);
   const std::optional<std::size_t> output = parse_use(sampler, "output", use);
@@ -275,7 +279,7 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
         "output", "the output has " +
                       (use == Use::kWeights ? counted(given, "weight", "weights") : counted(given, "value", "values")) +
                       " for " + counted(track.key_count, "key", "keys") + ", but must have " + grouped(per_key) +
-                      " for each key");
+                      " for each key; export the animation again");
     return false;
   }
   if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {

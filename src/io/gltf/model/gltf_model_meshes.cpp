@@ -71,13 +71,16 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
   primitive.mode = static_cast<int>(item.count("mode", 6, 4));
   const std::optional<JsonView> attributes = item.object("attributes");
   if (!attributes) return item.complain("attributes", "the primitive has no attributes; export the file again");
-  if (attributes->size() == 0) return attributes->complain("attributes of a primitive must not be empty");
+  if (attributes->size() == 0)
+    return attributes->complain("attributes of a primitive must not be empty; export the file again");
 
   source.draco = parse_draco(item, *attributes);
   if (complaint_.first()) return;
   primitive.has_draco = source.draco.has_value();
   if (primitive.has_draco && primitive.mode == 6)
-    return item.complain("mode", "the primitive is a triangle fan, which KHR_draco_mesh_compression does not allow");
+    return item.complain(
+        "mode",
+        "the primitive is a triangle fan, which KHR_draco_mesh_compression does not allow; export plain triangles");
   const Attributes compressed = source.draco ? source.draco->attributes : Attributes();
   source.base.position = parse_use(*attributes, "POSITION", Use::kPosition, primitive.has_draco);
   if (source.base.position) {
@@ -89,7 +92,8 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
       if (index && model_.accessors[*index].count != primitive.vertex_count)
         attributes->complain(key, "the accessor has " + counted(model_.accessors[*index].count, "element", "elements") +
                                       ", but the primitive has " +
-                                      counted(primitive.vertex_count, "position", "positions"));
+                                      counted(primitive.vertex_count, "position", "positions") +
+                                      "; export the file again");
     }
   }
   source.indices = parse_use(item, "indices", Use::kIndices, primitive.has_draco);
@@ -115,7 +119,7 @@ void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vecto
       (void)understands([&] {
         item.complain("targets", "the primitive has " + counted(own, "target", "targets") +
                                      ", but another one of its mesh has " + grouped(mesh.target_count) +
-                                     "; the missing targets are read as if they moved nothing here");
+                                     "; here the missing targets move nothing");
       });
       sources[p].targets.resize(mesh.target_count);
       mesh.primitives[p].targets.resize(mesh.target_count);
@@ -139,7 +143,8 @@ std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& a
   }
   for (const std::string& key : ids->keys()) {
     if (!attributes.has(key.c_str()))
-      ids->complain(key.c_str(), "the Draco data have this attribute, but the primitive does not");
+      ids->complain(key.c_str(),
+                    "the Draco data have this attribute, but the primitive has not; export the file again");
   }
   if (attributes.has("POSITION") && !ids->has("POSITION"))
     ids->complain("the Draco data have no attribute POSITION; export the file again");
@@ -154,7 +159,7 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
   for (std::size_t k = 0; targets && k < targets->size() && !complaint_.first(); ++k) {
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
-    if (target.size() == 0) note(target, "the target is empty, and is read as one that moves nothing");
+    if (target.size() == 0) note(target, "the target is empty, so it moves nothing");
     // A target is not read if it is empty or the primitive has no positions.
     if (target.size() == 0 || !source.base.position) {
       source.targets.emplace_back();
@@ -165,11 +170,13 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const auto read = [&](const char* key, Use use, const std::optional<std::size_t>& base,
                           std::optional<std::size_t>& result) {
       if (!target.has(key)) return;
-      if (!base) return target.complain(key, "the target has this attribute, but the primitive does not");
+      if (!base)
+        return target.complain(key, "the target has this attribute, but the primitive has not; export the file again");
       result = parse_use(target, key, use);
       if (result && model_.accessors[*result].count != primitive.vertex_count)
         target.complain(key, "the target has " + counted(model_.accessors[*result].count, "element", "elements") +
-                                 ", but the primitive has " + counted(primitive.vertex_count, "vertex", "vertices"));
+                                 ", but the primitive has " + counted(primitive.vertex_count, "vertex", "vertices") +
+                                 "; export the file again");
     };
     read("POSITION", Use::kMovedPosition, source.base.position, moved.position);
     read("NORMAL", Use::kMovedNormal, source.base.normal, moved.normal);
@@ -190,7 +197,7 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
     if (!has_joints && !has_weights) return;
     if (!has_joints || !has_weights) {
       return attributes.complain("the primitive has " + (has_joints ? joints_key : weights_key) + " but no " +
-                                 (has_joints ? weights_key : joints_key));
+                                 (has_joints ? weights_key : joints_key) + "; export the file again");
     }
     const auto read = [&](const std::string& key, Use use) {
       const std::optional<std::size_t> id =
@@ -201,7 +208,8 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
         attributes.complain(key.c_str(),
                             "the accessor has " + counted(model_.accessors[*index].count, "element", "elements") +
                                 ", but the primitive has " +
-                                counted(model_.accessors[*source.base.position].count, "position", "positions"));
+                                counted(model_.accessors[*source.base.position].count, "position", "positions") +
+                                "; export the file again");
       return AttributeSource{index.value_or(0), id};
     };
     const AttributeSource joints = read(joints_key, Use::kJoints), weights = read(weights_key, Use::kJointWeights);
@@ -221,7 +229,7 @@ void Parser::parse_skins() {
 void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
   if (!item.is_object()) return;
   const std::optional<JsonView> joints = item.array("joints");
-  if (!joints) return item.complain("joints", "the skin has no joints");
+  if (!joints) return item.complain("joints", "the skin has no joints; export the file again");
   for (std::size_t j = 0; j < joints->size(); ++j) {
     const std::optional<std::size_t> joint = joints->item(j).as_index(model_.nodes.size(), "nodes");
     if (!joint) return;
@@ -231,7 +239,8 @@ void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
   if (skin.inverse_binds && model_.accessors[*skin.inverse_binds].count < skin.joints.size())
     item.complain("inverseBindMatrices",
                   "the accessor has " + counted(model_.accessors[*skin.inverse_binds].count, "matrix", "matrices") +
-                      ", but the skin has " + counted(skin.joints.size(), "joint", "joints"));
+                      ", but the skin has " + counted(skin.joints.size(), "joint", "joints") +
+                      "; export the file again");
 }
 
 std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char* key, Use use, bool compressed) {
@@ -294,7 +303,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
       fits = is_one_of(accessor.component, {kUint8, kUint16, kUint32}) && !accessor.normalized;
       break;
   }
-  if (!fits) return complain("has a componentType that glTF does not allow for this use");
+  if (!fits) return complain("has a componentType that glTF does not allow for this use; export the file again");
 
   if (compressed) return;  // the decoded data are checked later
   if (accessor.view) check_inside_view(object, key, index, use);
@@ -327,11 +336,11 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
     return complain("must have its elements at multiples of 4 bytes, since it is an attribute of vertices");
   if (stride < size)
     return complain("has elements of " + counted(size, "byte", "bytes") + ", more than the byteStride of " +
-                    number(stride));
+                    number(stride) + "; export the file again");
   if (accessor.offset > view.length || view.length - accessor.offset < size ||
       accessor.count - 1 > (view.length - accessor.offset - size) / stride)
     return complain("ends beyond buffer view " + number(*accessor.view) + ", which has " +
-                    counted(view.length, "byte", "bytes"));
+                    counted(view.length, "byte", "bytes") + "; export the file again");
 }
 
 void Parser::check_sparse(const JsonView& object, const char* key, std::size_t index) {
@@ -349,7 +358,7 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
     if (offset > view.length || !binary::fits(sparse.count, size, view.length - offset))
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
                                " end beyond buffer view " + number(view_index) + ", which has " +
-                               counted(view.length, "byte", "bytes"));
+                               counted(view.length, "byte", "bytes") + "; export the file again");
   };
   check(sparse.indices_view, sparse.indices_offset, component_size(sparse.indices_component), sparse.indices_component,
         "indices");

@@ -89,11 +89,11 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
 Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place) {
   const std::optional<std::string> relative = decode_percent(uri);
   if (!relative || relative->empty())
-    return invalid_input(place, "the uri is empty or has a broken % code, so it names no file");
+    return invalid_input(place, "the uri is empty or has a broken % code, so it names no file; export the file again");
   if (has_scheme(uri))
     return invalid_input(
         place,
-        "the uri is a web address or another scheme; copy the file beside the glTF file and refer to it by name");
+        "the uri is a web address, not the name of a file; copy the file beside the glTF file and refer to it by name");
   return path_of(*relative);
 }
 
@@ -119,13 +119,13 @@ Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, con
     if (!uri.starts_with(prefix)) continue;
     const std::string_view text = uri.substr(prefix.size());
     if (text.size() / 4 * 3 + 3 < least)
-      return invalid_input(place,
-                           "the data URI has fewer than the " + counted(least, "byte", "bytes") + " of byteLength");
+      return invalid_input(place, "the data URI has fewer than the " + counted(least, "byte", "bytes") +
+                                      " of byteLength; export the file again");
     std::optional<std::string> bytes = decode_base64(text);
-    if (!bytes) return invalid_input(place, "the data URI is not valid base64");
+    if (!bytes) return invalid_input(place, "the data URI is not valid base64; export the file again");
     if (bytes->size() < least)
       return invalid_input(place, "the data URI has " + counted(bytes->size(), "byte", "bytes") +
-                                      ", but byteLength is " + grouped(least));
+                                      ", but byteLength is " + grouped(least) + "; export the file again");
     return std::move(*bytes);
   }
   return invalid_input(place,
@@ -157,7 +157,8 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
                          "the file, add --allow-external");
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) return invalid_input(place, std::string("this file is missing: ").append(utf8_of(path)));
-  if (!fs::is_regular_file(status)) return invalid_input(place, utf8_of(path).append(" is not a regular file"));
+  if (!fs::is_regular_file(status))
+    return invalid_input(place, utf8_of(path).append(" is not a regular file; put the file itself there"));
   return utf8_of(path);
 }
 
