@@ -85,7 +85,7 @@ Result<VectorView<float>> view_of(const chronormal_result& result, std::size_t c
 
 Result<Topology> topology_of(const chronormal_mesh* mesh) {
   if (mesh == nullptr) return Error{ErrorCode::kUsage, "mesh", "the pointer is NULL; pass a valid pointer"};
-  if (mesh->face_count == 0) return invalid_input("mesh", "the mesh has no faces");
+  if (mesh->face_count == 0) return invalid_input("mesh", "the mesh has no faces, so it has no normals; give it faces");
   if (mesh->corners == nullptr)
     return Error{ErrorCode::kUsage, "mesh.corners", "the pointer is NULL; pass a valid pointer"};
   if (mesh->offsets == nullptr) {

@@ -206,7 +206,8 @@ class ErrorsTest(unittest.TestCase):
         float32 = np.float32
         for call, words in (
                 (lambda: cn.curves(p0[:5], p1, faces), "face 0, corner 2|face 2|keyframe"),
-                (lambda: cn.curves(p0, p1[:5], faces), "keyframe 1: the keyframe has 5 positions, but the mesh has 12 vertices"),
+                (lambda: cn.curves(p0, p1[:5], faces),
+                 "keyframe 1: the keyframe has 5 positions, but the mesh has 12 vertices; give one position for each vertex"),
                 (lambda: cn.curves(p0[:, :2], p1, faces), r"p0: the shape must be \(n, 3\), a vector in each of n rows, but is \(12, 2\)"),
                 (lambda: cn.curves(p0.astype(complex), p1, faces), "p0: the array must hold real numbers, best as float32"),
                 (lambda: cn.curves(infinite, p1, faces), "keyframe 0, vertex 7: the position is NaN or infinite; positions must be finite numbers"),
@@ -215,7 +216,7 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: cn.curves(p0, p1, [[0, 1, 2 ** 40]]), r"faces\[0, 2\]: 1099511627776 cannot be an index"),
                 (lambda: cn.curves(p0, p1, [[0, 1]]), r"faces: the shape is \(1, 2\)"),
                 (lambda: cn.curves(p0, p1, faces.astype(float)), "faces: the type must be int32"),
-                (lambda: cn.curves(p0, p1, []), "the mesh has no faces"),
+                (lambda: cn.curves(p0, p1, []), "the mesh has no faces, so it has no normals; give it faces"),
                 (lambda: cn.curves(p0, p1, (np.array([0, 3]), np.array([0, 1]))), "offsets|face|corners"),
                 (lambda: cn.curves(p0, p1, (np.array([], int), np.array([0, 1, 2]))), "offsets: there must be one more"),
                 (lambda: cn.curves(p0, p1, faces, elements="edges"), "faces, vertices or corners"),

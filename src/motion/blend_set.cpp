@@ -38,9 +38,11 @@ Result<BlendSet> blend_set_of(const Motion& star) {
     const Motion::SegmentKeys& segment = star.segments[k];
     const auto place = [k] { return std::string("target ").append(std::to_string(k)); };
     if (segment.from != 0)
-      return Error{ErrorCode::kUsage, place(),
-                   std::string("the target must begin at the base, keyframe 0, but begins at keyframe ")
-                       .append(std::to_string(segment.from))};
+      return Error{
+          ErrorCode::kUsage, place(),
+          std::string(
+              "each target must go from the base, keyframe 0, to its own keyframe, but this one begins at keyframe ")
+              .append(std::to_string(segment.from))};
     const Motion::Keyframe& end = star.keyframes[segment.to];
     std::vector<float> deltas(end.positions);
     const std::vector<double>&of_end = end.residuals, &of_base = star.keyframes.front().residuals;
@@ -62,9 +64,9 @@ Status validate(const BlendTarget& target, const Topology& topology, std::size_t
                              counted(target.vertices.size(), "vertex", "vertices") + ", but must have 3 for each");
   for (std::size_t n = 0; n < target.vertices.size(); ++n) {
     if (target.vertices[n] >= topology.vertex_count())
-      return invalid_input(place(n), "the target moves vertex " + std::to_string(target.vertices[n]) +
-                                         ", but the mesh has only " +
-                                         counted(topology.vertex_count(), "vertex", "vertices"));
+      return invalid_input(
+          place(n), "the target moves vertex " + std::to_string(target.vertices[n]) + ", but the mesh has only " +
+                        counted(topology.vertex_count(), "vertex", "vertices") + "; give the mesh of the target");
     if (n > 0 && target.vertices[n] <= target.vertices[n - 1])
       return invalid_input(place(n), "the vertices of a target must be in ascending order, each once");
     if (!all_finite(std::span(target.deltas).subspan(3 * n, 3)))

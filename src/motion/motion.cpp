@@ -131,7 +131,8 @@ Result<Instant> find_instant(const Motion& motion, double asked) {
   }
   if (!found)
     return misuse("time " + rounded_text(time, {first, last}) + " is outside of the motion, which goes from " +
-                  rounded_text(first, {time, last}) + " to " + rounded_text(last, {time, first}));
+                  rounded_text(first, {time, last}) + " to " + rounded_text(last, {time, first}) +
+                  "; choose a time in between");
   return Instant{*found, LocalTime::between(start_of(*found), time, end_of(*found))};
 }
 

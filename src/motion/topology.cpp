@@ -19,12 +19,12 @@ Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> of
     const std::size_t first = offsets.empty() ? 3 * f : offsets[f];
     const std::size_t end = offsets.empty() ? 3 * f + 3 : offsets[f + 1];
     if (end > corners.size() || end < first || end - first < 3)
-      return invalid_input("face " + std::to_string(f), "a face must have at least three corners");
+      return invalid_input("face " + std::to_string(f), "a face must have at least three corners; leave this face out");
     for (std::size_t c = first; c < end; ++c) {
       if (corners[c] >= vertex_count)
         return invalid_input("face " + std::to_string(f) + ", corner " + std::to_string(c - first),
                              "the corner refers to vertex " + std::to_string(corners[c]) + ", but the mesh has only " +
-                                 counted(vertex_count, "vertex", "vertices"));
+                                 counted(vertex_count, "vertex", "vertices") + "; correct the corner");
     }
   }
   return Success{};

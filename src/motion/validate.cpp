@@ -35,10 +35,12 @@ const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::Se
 }
 
 Status check_mesh(const Motion& motion) {
-  if (motion.topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
+  if (motion.topology.face_count() == 0)
+    return invalid_input("", "the mesh has no faces, so it has no normals; give it faces");
   if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != motion.topology.vertex_count())
     return invalid_input("", "the list of bodies has " + counted(motion.body_of_vertex.size(), "entry", "entries") +
-                                 ", but the mesh has " + counted(motion.topology.vertex_count(), "vertex", "vertices"));
+                                 ", but the mesh has " + counted(motion.topology.vertex_count(), "vertex", "vertices") +
+                                 "; give one entry for each vertex");
   return Success{};
 }
 
@@ -51,8 +53,9 @@ Status check_residuals(const Motion& motion, std::size_t k) {
         "the keyframe must have one residual (what rounding to float32 left over) for each coordinate");
   for (std::size_t i = 0; i < keyframe.residuals.size(); ++i) {
     if (static_cast<float>(double{keyframe.positions[i]} + keyframe.residuals[i]) != keyframe.positions[i])
-      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                           "the residual is larger than the rounding of its position to float32");
+      return invalid_input(
+          keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+          "the residual is larger than the rounding of its position to float32; compute the residuals again");
   }
   return Success{};
 }
@@ -78,19 +81,19 @@ Status check_rest(const Motion& motion, std::size_t k) {
 }
 
 Status check_segments(const Motion& motion) {
-  if (motion.segments.empty()) return invalid_input("", "a motion needs at least two keyframes");
+  if (motion.segments.empty()) return invalid_input("", "a motion needs at least two keyframes; add keyframes");
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const auto [from, to] = motion.segments[s];
     const std::string place = "segment " + std::to_string(s);
     if (from >= motion.keyframes.size() || to >= motion.keyframes.size())
-      return invalid_input(place, "the segment refers to a keyframe that does not exist");
+      return invalid_input(place, "the segment refers to a keyframe that does not exist; correct the segment");
     if (!(motion.keyframes[from].time < motion.keyframes[to].time))
       return invalid_input(place, "the keyframe at the end of the segment must be later than the one at its start");
     if (const char* const fault = fault_of_kind(motion.kind, s, motion.segments[s])) return invalid_input(place, fault);
   }
   if (motion.kind != MotionKind::kAnimation && motion.segments.size() + 1 != motion.keyframes.size())
     return invalid_input("", "the motion has " + counted(motion.segments.size(), "segment", "segments") +
-                                 ", which does not fit its " +
+                                 ", but must have one fewer than its " +
                                  counted(motion.keyframes.size(), "keyframe", "keyframes"));
   return Success{};
 }

@@ -12,18 +12,19 @@ namespace chronormal {
 namespace {
 
 constexpr std::array kDescriptions = {
-    SchemeDescription{"recompute", "the normal computed anew from the positions at t, in float32"},
-    SchemeDescription{"polynomial", "the exact normal, a quadratic in t, then normalised"},
-    SchemeDescription{"rational", "the exact normal, divided by the square root of its squared length"},
-    SchemeDescription{"linear", "straight line between the unit end normals"},
+    SchemeDescription{"recompute", "the normal computed from the positions at t, in float32"},
+    SchemeDescription{"polynomial", "the exact normal, a quadratic polynomial in t, scaled to length 1"},
+    SchemeDescription{"rational", "the exact normal, divided by its length, which a polynomial in t gives squared"},
+    SchemeDescription{"linear", "straight line between the unit normals at both ends"},
     SchemeDescription{"quadratic", "parabola through 3 exact unit normals"},
     SchemeDescription{"cubic", "cubic through 4 exact unit normals"},
     SchemeDescription{"lagrange:K",
                       "polynomial of degree K through K + 1 exact unit normals, K = 1 to 64 (from about "
                       "K = 16 on, float32 limits the accuracy)"},
-    SchemeDescription{"linear:scaled",
-                      "straight line, with the length of one end normal chosen for the smallest error"},
-    SchemeDescription{"slerp", "shortest arc between the end normals"},
+    SchemeDescription{
+        "linear:scaled",
+        "straight line between the normals at both ends, the length of one chosen for the smallest error"},
+    SchemeDescription{"slerp", "shortest arc between the unit normals at both ends"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},
     SchemeDescription{"quaternion:matrix", "quaternion slerp, with frames by the matrix M of the paper"},
     SchemeDescription{"quaternion:edge",
@@ -33,7 +34,7 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"quaternion:optimal", "quaternion slerp, with the frames that give the smallest average error"},
     SchemeDescription{"circle", "circle through both end normals and the exact normal of t = 1/2, at constant speed"},
     SchemeDescription{"circle:timed",
-                      "circle through both end normals and the exact normal of t = 1/2, met at that time"},
+                      "circle through both end normals and the exact normal of t = 1/2, which it reaches at t = 1/2"},
 };
 
 // The two parts of a scheme's name, "family:parameter". The parameter is empty if there is no colon.

@@ -173,7 +173,7 @@ TEST_F(InspectCli, columns_are_aligned_below_their_titles_even_with_accents) {
 
 TEST_F(InspectCli, errors_and_output_are_as_in_other_commands) {
   expect_error("", 2, "there is no input");
-  expect_error("a.obj --sample twist", 2, "more than one input");
+  expect_error("a.obj --sample twist", 2, "give either files or one --sample");
   expect_error("a.obj --nonsense", 2, "--nonsense");
   expect_error("missing.glb", 1, "missing.glb");
   folder_.write("bad.glb", "glTF but not really");

@@ -155,7 +155,8 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   EXPECT_EQ(times_of("0:0.01:0.04", " --fps 50").size(), 5U);
   for (const char* const wrong : {"x", "0,,1", "1:2", "0:0:1", "0:-1:1", "1:1:0", "nan", "0:1e-9:1", "1e999", "''"})
     expect_error(std::string("a.obj b.obj -o n.npy --times ") + wrong, 2, "--times");
-  expect_error("a.obj b.obj -o n.npy --times 0,1.5", 2, "time 1.5 is outside of the motion, which goes from 0 to 1");
+  expect_error("a.obj b.obj -o n.npy --times 0,1.5", 2,
+               "time 1.5 is outside of the motion, which goes from 0 to 1; choose a time in between");
   expect_error("a.obj b.obj -o n.npy --times=-1", 2, "from 0 to 1");
   expect_error("a.obj b.obj -o n.npy --times 1 --fps 30", 2, "from 0 to 0.0333333");
   expect_error("a.obj b.obj -o n.npy", 2, "0 to 1");
@@ -220,7 +221,7 @@ TEST_F(SampleCli, a_name_that_several_targets_have_is_refused_with_their_numbers
   builder.json["meshes"][0]["extras"]["targetNames"] = {"smile", "smile"};
   folder_.write("twice.glb", builder.glb());
   expect_error("twice.glb -o n.npy --weights smile=1", 2,
-               "targets 0 and 1 all have the name 'smile'; give the number of one instead");
+               "targets 0 and 1 all have the name 'smile'; give the number of the target instead");
   EXPECT_EQ(array_of("twice.glb --weights 1=1").elements, array_of("twice.glb --weights 0,1").elements);
   // If a number is also the name of a target, it selects the target with this name.
   builder.json["meshes"][0]["extras"]["targetNames"] = {"1", "smile"};

@@ -99,7 +99,7 @@ TEST_F(TargetsCli, wrong_usage_of_base_is_exit_2_and_says_what_to_do) {
   expect_error("convert --base base.obj -o out_%d.obj", 2, {"--base", "targets"});
   expect_error("compare --base base.obj targets --fps 30", 2, {"--fps"});
   expect_error("compare --base '' targets", 2, {"--base"});
-  expect_error("compare --base - -", 2, {"only be given once"});
+  expect_error("compare --base - -", 2, {"only be read once"});
 }
 
 TEST_F(TargetsCli, errors_in_targets_have_the_exit_code_and_the_file) {

@@ -103,7 +103,9 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   EXPECT_EQ(error_of(validate(set)), "target 1: the target has 5 coordinates for 2 vertices, but must have 3 for each");
   set = small_set();
   set.targets[0].vertices = {4};
-  EXPECT_EQ(error_of(validate(set)), "target 0, entry 0: the target moves vertex 4, but the mesh has only 4 vertices");
+  EXPECT_EQ(
+      error_of(validate(set)),
+      "target 0, entry 0: the target moves vertex 4, but the mesh has only 4 vertices; give the mesh of the target");
   for (const std::vector<std::uint32_t>& vertices : {std::vector<std::uint32_t>{2, 0}, {2, 2}}) {
     set = small_set();
     set.targets[1].vertices = vertices;

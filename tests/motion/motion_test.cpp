@@ -106,7 +106,8 @@ TEST(Validate, refuses_frames_of_another_size) {
 TEST(Validate, refuses_bodies_of_another_number_of_vertices) {
   Motion motion = two_frames();
   motion.body_of_vertex = {0, 0};
-  expect_invalid(motion, "", "the list of bodies has 2 entries, but the mesh has 3 vertices");
+  expect_invalid(motion, "",
+                 "the list of bodies has 2 entries, but the mesh has 3 vertices; give one entry for each vertex");
 }
 
 TEST(Validate, refuses_segments_that_lead_nowhere) {
@@ -196,7 +197,7 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   motion.kind = MotionKind::kTargets;
   expect_invalid(motion, "segment 1", "from keyframe 0 to keyframe k + 1");
   motion.segments = {{0, 1}};
-  expect_invalid(motion, "", "1 segment, which does not fit its 3 keyframes");
+  expect_invalid(motion, "", "1 segment, but must have one fewer than its 3 keyframes");
   motion.kind = MotionKind::kAnimation;
   motion.segments = {{0, 2}};
   expect_invalid(motion, "segment 0", "from a keyframe k to keyframe k + 1");

@@ -24,7 +24,7 @@ constexpr std::array kMorphs = {
 };
 
 constexpr std::array kBlendShapes = {
-    BuiltinMorph{"bumps", "blend shapes: 12 overlapping targets on the front of a head, 6,144 faces"},
+    BuiltinMorph{"bumps", "a head with 12 blend shapes (morph targets) that overlap on its front, 6,144 faces"},
 };
 
 // A grid of (columns + 1) x (rows + 1) points, in which each cell consists of two triangles. If `closed` is true, the

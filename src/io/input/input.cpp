@@ -38,10 +38,10 @@ Error misuse(std::string place, std::string message) {
 }
 
 constexpr const char* kNoNodes =
-    "only the nodes of a glTF file place meshes, and the input is not one; leave --world out";
+    "--world is only for glTF files, whose nodes place meshes, and the input is not one; leave --world out";
 
 Error not_animated(const std::string& input) {
-  return misuse(input, "--animation is only for glTF files, and this is not one; leave --animation out");
+  return misuse(input, "--animation is only for glTF files, and this file is not one; leave --animation out");
 }
 
 // Returns the error for options that choose keyframes (--from, --to, --every, --loop) of an input that is not a
@@ -297,7 +297,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   if (!meshes) return meshes.error();
   if (meshes.value().size() != 1)
     return misuse(mesh_input, "a cache needs exactly one mesh, but this input names " +
-                                  std::to_string(meshes.value().size()) + " files");
+                                  std::to_string(meshes.value().size()) + " files; name a single file");
   const std::string& mesh_path = meshes.value().front();
   ReadMotion read;
   Result<FileBytes> file = FileBytes::open(mesh_path, options.resolve);
@@ -458,7 +458,7 @@ Result<ReadMotion> read_several(const InputOptions& options) {
   for (const std::string& input : inputs) {
     const Format* const format = find_format(input);
     if (format != nullptr && (format->holds == Holds::kGltf || format->holds == Holds::kMotion))
-      return misuse(input, "this file holds a whole motion; give no other inputs");
+      return misuse(input, "this file holds a whole motion, so no other input can be given; leave the others out");
   }
   if (!options.animation.empty()) return not_animated(inputs.front());
   std::vector<std::string> notes;
@@ -484,7 +484,7 @@ Status check_input(const InputOptions& options) {
   if (options.world && (!options.base.empty() || !options.samples.empty() || options.files.size() > 1))
     return misuse("--world", kNoNodes);
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
-    return misuse("--animation", "--animation is only for glTF files; name one as the input");
+    return misuse("--animation", "--animation is only for glTF files; name a glTF file as the input");
   if (!options.base.empty()) {
     if (!options.samples.empty())
       return misuse("--base", "--sample cannot be used with --base; give targets as .obj, .ply or .target files");
@@ -498,7 +498,7 @@ Status check_input(const InputOptions& options) {
   if (options.files.empty() && options.samples.empty())
     return misuse("", "there is no input; name a file, a folder or several keyframes, or --sample NAME");
   if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
-    return misuse("", "there is more than one input; give either files or one --sample");
+    return misuse("", "--sample is an input of its own; give either files or one --sample");
   for (const std::string& file : options.files) {
     if (file.empty()) return misuse("", "the name of a file is empty; give the name of a file or folder");
     const Format* const format = find_format(file);
@@ -702,7 +702,8 @@ Result<Input> open_input(const InputOptions& asked) {
     return keep(name_of_files(options.files), std::move(opened.value().read));
   }
   if (options.frames_per_second != 1)
-    return misuse("--fps", "the animations of a glTF file have their own times; leave --fps out");
+    return misuse("--fps",
+                  "--fps has no meaning for a glTF file, whose animations have times in seconds; leave --fps out");
   state->name = name_of_files(options.files);
   state->opened = std::move(opened).value();
   state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);

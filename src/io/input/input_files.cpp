@@ -22,7 +22,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::string_view kNoneMatches = "no file has this name or matches this pattern";
+constexpr std::string_view kNoneMatches =
+    "no file has this name or matches this pattern; check the name and the folder";
 constexpr std::string_view kTopologyMustNotChange = "; give files that all have the same faces";
 
 // Removes the digits at the beginning of the text, and returns them without their leading zeros.
@@ -89,7 +90,8 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
   bool has_stdin = false;
   for (const std::string& input : options.files) {
     if (input == "-") {
-      if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input (-) can only be given once"};
+      if (has_stdin)
+        return Error{ErrorCode::kUsage, input, "the standard input (-) can only be read once; give - once"};
       has_stdin = true;
       files.push_back(input);
       continue;
@@ -104,7 +106,8 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
     const bool is_pattern = input.find_first_of("*?[") != std::string::npos;
     const auto numbered = is_missing && !is_pattern ? around_number(input) : std::nullopt;
     if (!std::filesystem::exists(status) && !(is_missing && is_pattern) && !numbered)
-      return Error{ErrorCode::kFailed, input, code ? code.message() : "there is no file or folder of this name"};
+      return Error{ErrorCode::kFailed, input,
+                   code ? code.message() : "there is no file or folder of this name; check the name"};
     Result<std::vector<std::string>> found = numbered     ? match_numbered(numbered->first, numbered->second)
                                              : is_missing ? match_pattern(input, true)
                                                           : list_folder(input);
@@ -250,9 +253,11 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
   };
   const std::string range = "the keyframes are numbered from 0 to " + std::to_string(count - 1);
   if (options.every == 0) return misuse("--every", "the step must be at least 1");
-  if (options.to && *options.to >= count) return misuse("--to", "there is no keyframe with this number; " + range);
+  if (options.to && *options.to >= count)
+    return misuse("--to", "there is no keyframe with this number; choose another, since " + range);
   const std::size_t last = options.to.value_or(count - 1);
-  if (options.from >= count) return misuse("--from", "there is no keyframe with this number; " + range);
+  if (options.from >= count)
+    return misuse("--from", "there is no keyframe with this number; choose another, since " + range);
   std::vector<std::size_t> frames;
   for (std::size_t k = options.from; k <= last; k += std::min(options.every, count)) frames.push_back(k);
   if (frames.size() < 2 && options.chooses_frames())
@@ -260,7 +265,7 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
                   : options.to                        ? "--to"
                   : options.loop && options.from == 0 ? "--loop"
                                                       : "--from",
-                  "with these options fewer than two keyframes are left, but a motion needs at least two; " + range);
+                  "these options leave fewer than two keyframes, but a motion needs two; choose more, since " + range);
   if (options.loop) frames.push_back(frames.front());
   return frames;
 }

@@ -37,14 +37,17 @@ Result<std::vector<FileIdentity>> identify_files(const InputOptions& options) {
   std::vector<FileIdentity> files;
   for (const std::string& path : paths.value()) {
     if (path == "-")
-      return Error{ErrorCode::kUsage, path, "the standard input cannot be read again by a later run; name a file"};
+      return Error{ErrorCode::kUsage, path,
+                   "the standard input cannot be read again by a later run, as --resume needs; name a file"};
     const std::optional<FileStatus> status = status_of(path);
     if (!status) return failure(path, errno);
     if (!status->is_file())
-      return Error{ErrorCode::kUsage, path, "a pipe or a device cannot be read again by a later run; name a file"};
+      return Error{ErrorCode::kUsage, path,
+                   "a pipe or a device cannot be read again by a later run, as --resume needs; name a file"};
     if (path.ends_with(".xml"))
       return Error{ErrorCode::kUsage, path,
-                   "changes of the other files of this cache would not be noticed; name the .mcx or .mc file"};
+                   "a later run could not notice changes of the files that this .xml file names; name the .mcx or .mc "
+                   "file itself"};
     files.push_back({path, status->size, status->changed});
   }
   return files;

@@ -29,7 +29,8 @@ Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::strin
         pose.named.push_back({target, of_target.as_number(), of_target.place()});
       }
     } else {
-      item.complain("a pose must be weights by the names of targets, such as {\"smile\": 1}, or a list of weights");
+      item.complain(
+          "a pose must be an object with the weights of targets by name, such as {\"smile\": 1}, or a list of weights");
     }
     if (complaint.first()) return *complaint.first();
   }

@@ -49,7 +49,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (files.empty())
     return invalid_input(folder, "the folder has no mesh files (" + extensions_of({Holds::kMesh}, " or ") +
-                                     ") to be keyframes; name a file of it, or a folder with such files");
+                                     ") to be keyframes; name another folder, or a single file");
   return files;
 }
 
@@ -246,9 +246,9 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
       const bool has_velocities = !motion.keyframes[0].velocities.empty();
       if (frame.velocities.empty() == has_velocities)
         return invalid_input(place(motion.keyframes.size()),
-                             (has_velocities ? "the file has no velocities, but " + place(0) + " has"
+                             (has_velocities ? "the file has no velocities, but " + place(0) + " has some"
                                              : "the file has velocities, but " + place(0) + " has none") +
-                                 "; all files of a sequence must have velocities, or none");
+                                 "; write velocities into all files of the sequence, or into none");
       keep(std::move(frame.positions).value(), std::move(frame.velocities), std::move(frame.residuals));
     }
   }
@@ -307,7 +307,8 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
     if (!frame.positions) return frame.positions.error();
     if (!frame.velocities.empty())
       return invalid_input(frame_place(k, motion.keyframes[keyframe].name),
-                           "the file has velocities, but " + frame_name(frames[0]) + " has none");
+                           "the file has velocities, but " + frame_name(frames[0]) +
+                               " has none; write velocities into all files of the sequence, or into none");
     const std::vector<float>& found = frame.positions.value();
     Status status = validate_positions(motion, keyframe, found);
     if (status) std::copy(found.begin(), found.end(), result.begin());

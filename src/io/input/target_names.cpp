@@ -57,8 +57,9 @@ Result<std::size_t> find_target(const TargetNames& names, const std::string& nam
     std::string numbers = std::to_string(found.front());
     for (std::size_t i = 1; i < found.size(); ++i)
       numbers += (i + 1 == found.size() ? " and " : ", ") + std::to_string(found[i]);
-    return Error{ErrorCode::kUsage, "",
-                 "targets " + numbers + " all have the name '" + name_or_number + "'; give the number of one instead"};
+    return Error{
+        ErrorCode::kUsage, "",
+        "targets " + numbers + " all have the name '" + name_or_number + "'; give the number of the target instead"};
   }
   std::size_t number = 0;
   const char* const end = name_or_number.data() + name_or_number.size();

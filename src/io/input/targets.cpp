@@ -59,8 +59,8 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   }
   if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (files.empty())
-    return invalid_input(folder, "the folder has no targets but the base itself (" +
-                                     extensions_of({Holds::kMesh, Holds::kTarget}, " or ") + ")");
+    return invalid_input(folder, "the folder has no targets beside the base; put targets there (" +
+                                     extensions_of({Holds::kMesh, Holds::kTarget}, " or ") + "), or name other files");
   return files;
 }
 
@@ -124,7 +124,7 @@ Result<Motion::Keyframe> read_shape(const InputOptions& options, const std::stri
 Result<ReadMotion> read_targets(const InputOptions& options) {
   const std::string& base = options.base;
   if (base == "-" && std::find(options.files.begin(), options.files.end(), "-") != options.files.end())
-    return Error{ErrorCode::kUsage, "-", "the standard input (-) can only be given once"};
+    return Error{ErrorCode::kUsage, "-", "the standard input (-) can only be read once; give - once"};
   Result<std::vector<std::string>> found =
       find_input_files(options, [&](const std::string& folder) { return list_targets(folder, base); });
   if (!found) return found.error();
@@ -132,7 +132,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   std::erase_if(
       files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
   if (files.empty())
-    return invalid_input(place_of(base), "there is no target, only the base itself; name the files of the targets");
+    return invalid_input(place_of(base), "there is no target beside the base; name the files of the targets");
 
   // Normals are read only from the base. Viewers compute the normals of targets from positions, so the stored normals
   // of targets would not be used.

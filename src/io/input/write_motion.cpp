@@ -127,7 +127,8 @@ Status internal::write_motion(MotionStream& stream, const std::string& path, boo
   if (format != nullptr && format->holds == Holds::kGltf) {
     if (motion.kind != MotionKind::kTargets || !is_glb_extension(lower_extension(path)))
       return Error{ErrorCode::kUsage, path,
-                   "convert writes glTF only as .glb, and only a mesh with morph targets; for other inputs, use bake"};
+                   "convert can only write glTF as .glb, and only from a base with morph targets; for another input, "
+                   "use bake instead"};
     if (Status status = check_output(path, force); !status) return status;
     if (Status status = stream.hold_all(); !status) return status;
     const Result<std::string> glb = write_glb_targets(motion, weld);

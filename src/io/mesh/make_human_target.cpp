@@ -62,7 +62,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
 
     if (done > most)
       return error("the file unpacks to more than " + counted(most, "byte", "bytes") +
-                   ", which is more than a target of this base can need");
+                   ", which is more than a target of this base can need; give the base that the target was made for");
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code == Z_BUF_ERROR)
@@ -142,12 +142,13 @@ Result<std::uint32_t> TargetReader::read_vertex(std::string_view word) {
   std::int64_t index = 0;
   const NumberFault fault = scan::parse_integer(word, index);
   if (fault == NumberFault::kNotANumber)
-    return error(scan::quoted(word) + " is not an index; a line must have an index and three numbers");
+    return error(scan::quoted(word) + " is not the index of a vertex; a line must have an index and three numbers");
   const bool is_vertex =
       fault == NumberFault::kNone && index >= 0 && static_cast<std::uint64_t>(index) < std::uint64_t{base_.count};
   if (!is_vertex)
     return error(scan::quoted(word) + " is not a vertex of the base, whose " +
-                 counted(base_.count, "vertex is", "vertices are") + " counted from 0");
+                 counted(base_.count, "vertex is", "vertices are") +
+                 " counted from 0; give the base that the target was made for");
   const auto vertex = static_cast<std::uint32_t>(index);
   if (has_delta_[vertex])
     return error("vertex " + std::to_string(vertex) + " has two deltas in this file; remove one of them");

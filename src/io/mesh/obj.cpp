@@ -93,7 +93,7 @@ class ObjReader {
   [[nodiscard]] std::size_t vertex_count() const { return positions_.size() / 3; }
   [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
     return " refers to vertex " + std::to_string(index) + ", but the file has " +
-           counted(vertex_count(), "vertex", "vertices");
+           counted(vertex_count(), "vertex", "vertices") + "; export the file again";
   }
 
   const std::string& name_;
@@ -123,8 +123,10 @@ Result<MeshFrame> ObjReader::read() {
     if (Status status = read_statement(whole_statement()); !status) return status.error();
   }
   const std::size_t last_line = lines_.number() == 0 ? 1 : lines_.number();
-  if (positions_.empty()) return error_in_line(last_line, "the file has no vertices (lines that begin with v)");
-  if (faces_.face_count() == 0) return error_in_line(last_line, "the file has no faces (lines that begin with f)");
+  if (positions_.empty())
+    return error_in_line(last_line, "the file has no vertices (lines that begin with v); export a mesh");
+  if (faces_.face_count() == 0)
+    return error_in_line(last_line, "the file has no faces (lines that begin with f); export a mesh with faces");
   if (largest_.index > static_cast<std::int64_t>(vertex_count()))
     return error_in_line(largest_.line, corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
 
@@ -147,8 +149,8 @@ Result<MeshFrame> ObjReader::read() {
     }
     shading_->has_normals = shading_->has_normals || index > 0;
   }
-  note(shading_->unknown_normals, " corner refers to a normal that the file does not have, and is read without one",
-       " corners refer to normals that the file does not have, and are read without one");
+  note(shading_->unknown_normals, " corner refers to a normal that the file does not have, so this normal is left out",
+       " corners refer to normals that the file does not have, so these normals are left out");
   note(shading_->nameless_groups, " line has an s without a smoothing group, and is read as s off",
        " lines have an s without a smoothing group, and are read as s off");
   return mesh;
@@ -273,9 +275,11 @@ Status ObjReader::read_corner(std::string_view word) {
   std::int64_t index = 0;
   const std::string_view vertex = word.substr(0, first_slash);
   const NumberFault fault = scan::parse_integer(vertex, index);
-  if (fault == NumberFault::kNotANumber) return error(open_corner() + ": " + scan::quoted(word) + " is not an index");
+  if (fault == NumberFault::kNotANumber)
+    return error(open_corner() + ": " + scan::quoted(word) + " is not the index of a vertex; export the file again");
   if (fault == NumberFault::kTooLarge)
-    return error(open_corner() + ": " + scan::quoted(vertex) + " is a larger index than a mesh can have");
+    return error(open_corner() + ": " + scan::quoted(vertex) +
+                 " is a larger index than a mesh can have; export the file again");
 
   std::size_t slash = first_slash;
   std::string_view normal;
@@ -295,7 +299,8 @@ Status ObjReader::read_corner(std::string_view word) {
 Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   const auto count = static_cast<std::int64_t>(vertex_count());
   if (index == 0)
-    return error(open_corner() + ": " + scan::quoted(word) + " is not allowed, since vertices are counted from 1");
+    return error(open_corner() + ": " + scan::quoted(word) +
+                 " is not allowed, since vertices are counted from 1; export the file again");
   if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;

@@ -241,7 +241,7 @@ class BodyReader {
     }
     if (faces_.face_count() == 0)
       return invalid_input(name_ + ", " + source_.place(),
-                           "no face has three or more corners, so the mesh has no normals");
+                           "no face has three or more corners, so the mesh has no normals; export a mesh with faces");
     Result<Topology> topology = faces_.build(vertex_count());
     if (!topology) return invalid_input(name_ + ", " + source_.place(), topology.error().text());
     MeshFrame mesh{std::move(topology).value(), std::move(positions_)};
@@ -332,7 +332,7 @@ class BodyReader {
 
   [[nodiscard]] bool read_length(const Property& property, std::int64_t& length) {
     if (!source_.integer(property.count_type, length)) return false;
-    return length >= 0 || fail("a list has a negative length, " + std::to_string(length));
+    return length >= 0 || fail("a list has a negative length, " + std::to_string(length) + "; export the file again");
   }
 
   [[nodiscard]] bool skip(const Property& property) {
@@ -349,7 +349,7 @@ class BodyReader {
       if (!source_.integer(property.type, vertex)) return false;
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count())
         return fail("corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
-                    ", but the file has " + counted(vertex_count(), "vertex", "vertices"));
+                    ", but the file has " + counted(vertex_count(), "vertex", "vertices") + "; export the file again");
       if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
         return fail("the mesh has more than 4,294,967,295 corners; split the mesh");
     }

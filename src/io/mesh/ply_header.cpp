@@ -87,12 +87,12 @@ Result<Header> HeaderReader::read() {
   };
 
   if (!next_words() || words.size() != 1 || words[0] != "ply")
-    return error("this is not a PLY file, since its first line is not the word ply");
+    return error("this is not a PLY file, since its first line is not the word ply; export the file again");
   while (next_words()) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") {
       if (words.size() != 1) return error("the line end_header must have no other words; remove them");
-      if (!has_format_) return error("the header has no line that begins with 'format'");
+      if (!has_format_) return error("the header has no line that begins with 'format'; export the file again");
       header_.body_begin = lines_.position();
       header_.line_count = lines_.number();
       if (Status status = check_elements(); !status) return status.error();
@@ -108,7 +108,7 @@ Status HeaderReader::read_statement(const Words& words) {
   if (!has_format_) return error("a line that begins with 'format' must come before " + scan::quoted(words[0]));
   if (words[0] == "element") return read_element(words);
   if (words[0] == "property") return read_property(words);
-  return error(scan::quoted(words[0]) + " is not a keyword of a PLY header");
+  return error(scan::quoted(words[0]) + " is not a keyword of a PLY header; export the file again");
 }
 
 Status HeaderReader::read_format(const Words& words) {
@@ -125,7 +125,7 @@ Status HeaderReader::read_format(const Words& words) {
                  " cannot be read; it must be ascii, binary_little_endian or binary_big_endian");
   }
   if (words[2] != "1.0")
-    return error("version " + scan::quoted(words[2]) + " of PLY cannot be read; only 1.0 can be read");
+    return error("version " + scan::quoted(words[2]) + " of PLY cannot be read; export the file as version 1.0");
   has_format_ = true;
   return Success{};
 }
@@ -137,7 +137,8 @@ Status HeaderReader::read_element(const Words& words) {
   const char* const last = words[2].data() + words[2].size();
   const auto [end, code] = from_chars(words[2].data(), last, element.count);
   if (code != std::errc{} || end != last)
-    return error(scan::quoted(words[2]) + " is not a valid number of " + scan::quoted(words[1]) + " elements");
+    return error(scan::quoted(words[2]) + " is not a valid number of " + scan::quoted(words[1]) +
+                 " elements; correct it, or export the file again");
   if (!element_names_.insert(element.name).second)
     return error("the element " + scan::quoted(element.name) + " is declared twice; remove one of the two lines");
   property_names_.clear();
@@ -157,11 +158,12 @@ Status HeaderReader::read_property(const Words& words) {
   property.name = words.back();
   const std::string_view type_word = words[words.size() - 2];
   const std::optional<Scalar> type = find_scalar(type_word);
-  if (!type) return error("the type " + scan::quoted(type_word) + " is not a type of PLY");
+  if (!type) return error("the type " + scan::quoted(type_word) + " is not a type of PLY; export the file again");
   property.type = *type;
   if (is_list) {
     const std::optional<Scalar> count_type = find_scalar(words[2]);
-    if (!count_type) return error("the type " + scan::quoted(words[2]) + " is not a type of PLY");
+    if (!count_type)
+      return error("the type " + scan::quoted(words[2]) + " is not a type of PLY; export the file again");
     if (!is_integer(*count_type))
       return error("the length of a list must be an integer, but its type is " + scan::quoted(words[2]));
     property.count_type = *count_type;
@@ -207,14 +209,15 @@ Status HeaderReader::check_elements() {
   };
 
   if (header_.vertex_element == kNone || header_.elements[header_.vertex_element].count == 0)
-    return error("the file has no vertices");
+    return error("the file has no vertices; export a mesh");
   for (const Role role : {Role::kX, Role::kY, Role::kZ}) {
     if (!has_role(header_.vertex_element, role))
-      return error(std::string("the vertices have no property ") + "xyz"[static_cast<std::size_t>(role)]);
+      return error(std::string("the vertices have no property ") + "xyz"[static_cast<std::size_t>(role)] +
+                   "; export the file again");
   }
   if (header_.face_element == kNone || header_.elements[header_.face_element].count == 0) {
     if (has_strips) return error("the file has triangle strips, which cannot be read; export it with faces");
-    return error("the file has no faces");
+    return error("the file has no faces; export a mesh with faces");
   }
   if (!has_role(header_.face_element, Role::kIndices))
     return error("the faces have no property vertex_indices; export the file again");
@@ -244,9 +247,9 @@ Result<bool> assign_velocities(Header& header, const std::string& name) {
       continue;
     for (std::size_t c = 0; c < 3; ++c) {
       if (found[c] == nullptr)
-        return invalid_input(
-            name + ", header",
-            "the velocity of the vertices is incomplete, since they have no property " + std::string(names[c]));
+        return invalid_input(name + ", header",
+                             "the velocity of the vertices is incomplete, since they have no property " +
+                                 std::string(names[c]) + "; add it, or leave all velocities out");
       if (found[c]->is_list)
         return invalid_input(name + ", header",
                              "the velocity " + std::string(names[c]) + " is a list, but must be a number");

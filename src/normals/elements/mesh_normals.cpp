@@ -41,7 +41,8 @@ Status check_positions(const Topology& topology, VectorView<const float> positio
   const std::string place = "keyframe " + std::to_string(keyframe);
   if (positions.count != topology.vertex_count()) {
     return invalid_input(place, "the keyframe has " + counted(positions.count, "position", "positions") +
-                                    ", but the mesh has " + counted(topology.vertex_count(), "vertex", "vertices"));
+                                    ", but the mesh has " + counted(topology.vertex_count(), "vertex", "vertices") +
+                                    "; give one position for each vertex");
   }
   for (std::size_t i = 0; i < positions.count; ++i) {
     if (!is_finite(to_double(positions[i])))
@@ -456,7 +457,8 @@ MeshNormals& MeshNormals::operator=(MeshNormals&&) noexcept = default;
 MeshNormals::~MeshNormals() = default;
 
 Result<MeshNormals> MeshNormals::make(Topology topology, const MeshNormalsOptions& options) {
-  if (topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
+  if (topology.face_count() == 0)
+    return invalid_input("", "the mesh has no faces, so it has no normals; give it faces");
   if (options.elements.kind == ElementKind::kFaces && options.weighting != Weighting::kArea)
     return Error{ErrorCode::kUsage, "weighting",
                  "a weighting has no meaning for normals of faces; choose vertices or corners"};
@@ -577,7 +579,8 @@ Status MeshNormals::set_targets(BlendSet set) {
   if (parts.options.weighting != Weighting::kArea)
     return Error{ErrorCode::kUsage, "weighting",
                  "normals of blend shapes can only be weighted by area; choose this weighting"};
-  if (!(set.topology == parts.topology())) return invalid_input("", "the blend shapes belong to another mesh");
+  if (!(set.topology == parts.topology()))
+    return invalid_input("", "the blend shapes belong to another mesh; give the blend shapes of this mesh");
   if (Status status = validate(set); !status) return status;
   if (!parts.knows_elements()) {
     if (Status status = parts.share(star_of(set)); !status) return status;

@@ -206,7 +206,8 @@ Result<NormalGroups> NormalGroups::by_smoothing_group(const Topology& topology, 
   assert(points.point_of_vertex.size() == topology.vertex_count());
   if (group_of_face.size() != topology.face_count())
     return invalid_input("", "the list of smoothing groups has " + counted(group_of_face.size(), "entry", "entries") +
-                                 " for " + counted(topology.face_count(), "face", "faces"));
+                                 " for " + counted(topology.face_count(), "face", "faces") +
+                                 "; give one entry for each face");
   CornerSets sets(topology.corner_count());
   const Listing around = corners_of_points(topology, points);
   const std::vector<std::uint32_t> face_of_corner = face_of_each_corner(topology);
@@ -231,7 +232,8 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
     return Error{ErrorCode::kUsage, "", "the tolerance of stored normals must be from 0 to 45 degrees"};
   if (normal_of_corner.count != topology.corner_count())
     return invalid_input("", "the list of normals has " + counted(normal_of_corner.count, "entry", "entries") +
-                                 " for " + counted(topology.corner_count(), "corner", "corners"));
+                                 " for " + counted(topology.corner_count(), "corner", "corners") +
+                                 "; give one normal for each corner");
   for (std::size_t c = 0; c < normal_of_corner.count; ++c) {
     const Vec3f n = normal_of_corner[c];
     if (!std::isfinite(n.x) || !std::isfinite(n.y) || !std::isfinite(n.z))

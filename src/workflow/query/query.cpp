@@ -42,7 +42,7 @@ Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
                "the motion has nothing " + std::string(option == std::string("--from") ? "after " : "before ") +
                    rounded_text(time, {first, last}) + "; the motion goes from " + rounded_text(first, {time, last}) +
-                   " to " + rounded_text(last, {time, first})};
+                   " to " + rounded_text(last, {time, first}) + "; choose a time in between"};
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
   expect_error({"walk.pc2"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"walk.pc2", "walk.mdd"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"body.obj", "walk.pc2", "body.obj"}, ErrorCode::kUsage, "give it together with one mesh");
-  expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "give no other inputs");
+  expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "leave the others out");
   folder_.write("body2.obj", kObj);
   expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "this input names 2 files");
   EXPECT_EQ(read({"walk.npz"}, 0).error().code, ErrorCode::kUsage);
@@ -350,7 +350,7 @@ TEST_F(OpenInput, targets_have_every_name_that_a_mesh_gives_them) {
   EXPECT_EQ(find_target(names, "blink").value(), 1U);
   EXPECT_EQ(find_target(names, "0").value(), 0U);
   EXPECT_EQ(find_target(names, "smile").error().message,
-            "targets 0 and 1 all have the name 'smile'; give the number of one instead");
+            "targets 0 and 1 all have the name 'smile'; give the number of the target instead");
   EXPECT_EQ(target_label(names, 1), "1 (blink)");
   Result<Input> sequence = open_input(test::files({folder_ / "walk.npz"}));
   EXPECT_TRUE(target_names(sequence.value()).value().empty());

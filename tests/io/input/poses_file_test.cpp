@@ -27,7 +27,8 @@ TEST(PosesFile, errors_say_where) {
            {"{}", "p: the file must be a list of at least one pose, such as [{\"smile\": 1}]"},
            {"[]", "p: the file must be a list of at least one pose, such as [{\"smile\": 1}]"},
            {"[3]",
-            "p, /0: a pose must be weights by the names of targets, such as {\"smile\": 1}, or a list of weights"},
+            "p, /0: a pose must be an object with the weights of targets by name, such as {\"smile\": 1}, or a list of "
+            "weights"},
            {R"([{}, {"smile": "1"}])", "p, /1/smile: the value must be a number, not a string"},
            {"[[1, 1e999]]", "p, /0/1: the number is too large for a double; use a smaller number"}}) {
     const auto poses = parse_poses(text, "p");

@@ -162,14 +162,14 @@ TEST(FindFrames, what_is_not_there_is_an_error_with_its_name) {
   EXPECT_EQ(missing.text(), folder / "no.obj" + ": No such file or directory");
   const Error unmatched = error_of(find_frames(test::files(Names{folder / "no_*.obj"})));
   EXPECT_EQ(unmatched.code, ErrorCode::kFailed);
-  EXPECT_EQ(unmatched.text(), folder / "no_*.obj" + ": no file has this name or matches this pattern");
+  EXPECT_EQ(unmatched.text(),
+            folder / "no_*.obj" + ": no file has this name or matches this pattern; check the name and the folder");
   EXPECT_EQ(error_of(find_frames(test::files(Names{"-", "-"}))).code, ErrorCode::kUsage);
   const Error empty = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(empty.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(empty.text(),
             folder.path() +
-                ": the folder has no mesh files (.obj or .ply) to be keyframes; name a file of it, or a folder "
-                "with such files");
+                ": the folder has no mesh files (.obj or .ply) to be keyframes; name another folder, or a single file");
 }
 
 TEST(FindFrames, folder_that_cannot_be_listed_is_an_error_with_its_name) {
@@ -251,8 +251,8 @@ TEST(ReadSequence, velocities_are_kept_where_they_are_asked_for_and_every_frame_
   for (const bool stream : {false, true}) {
     EXPECT_EQ(open(files, stream).value(), (std::vector<float>{1, 2, 2, 1, 2, 2, 1, 2, 2}));
     EXPECT_EQ(error_of(open({files[0], files[1], other}, stream)).text(),
-              "frame 2 (9.ply): the file has no velocities, but frame 0 (0.ply) has; all files of a sequence must have "
-              "velocities, or none");
+              "frame 2 (9.ply): the file has no velocities, but frame 0 (0.ply) has some; write velocities into all "
+              "files of the sequence, or into none");
     const Error late = error_of(open({other, files[1]}, stream));
     EXPECT_EQ(late.place, "frame 1 (1.ply)");
     EXPECT_EQ(late.message.find("the file has velocities, but frame 0"), 0U) << late.message;

@@ -334,8 +334,9 @@ TEST(InputFrames, from_to_and_every_choose_keyframes_and_keep_their_times) {
         EXPECT_EQ(chosen.value().keyframes[i].time, static_cast<double>(1 + 3 * i)) << names.back();
       }
       options.to = 9;
-      EXPECT_EQ(test::read_motion(options).error().text(),
-                "--to: there is no keyframe with this number; the keyframes are numbered from 0 to 8");
+      EXPECT_EQ(
+          test::read_motion(options).error().text(),
+          "--to: there is no keyframe with this number; choose another, since the keyframes are numbered from 0 to 8");
       options.to = 2;
       EXPECT_EQ(test::read_motion(options).error().code, ErrorCode::kUsage);
     }

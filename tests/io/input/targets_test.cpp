@@ -123,7 +123,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   EXPECT_EQ(names_of(read_over(folder_ / "./base.obj", Names{folder_.path()})), expected);
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(alone.text(), base_ + ": there is no target, only the base itself; name the files of the targets");
+  EXPECT_EQ(alone.text(), base_ + ": there is no target beside the base; name the files of the targets");
   // A folder of MakeHuman targets may also contain the base, an OBJ file. The base then does not count as a second
   // format.
   make_folder("mh");
@@ -136,8 +136,9 @@ TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
   make_folder("t/in");
   const Error none = error_of(read({folder_ / "t"}));
   EXPECT_EQ(none.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(none.text(),
-            folder_ / "t" + ": the folder has no targets but the base itself (.obj, .ply, .target or .target.gz)");
+  EXPECT_EQ(none.text(), folder_ / "t" +
+                             ": the folder has no targets beside the base; put targets there (.obj, .ply, .target or "
+                             ".target.gz), or name other files");
   folder_.write("t/a.obj", kRaisedObj);
   folder_.write("t/in/b.target", kLiftTarget);
   const Error both = error_of(read({folder_ / "t"}));

@@ -100,8 +100,10 @@ TEST(MakeHumanTarget, target_without_deltas_moves_nothing_but_an_empty_file_is_a
 TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong) {
   const auto second_line = [](const std::string& line) { return error_text("0 0 0 0\n" + line + "\n2 1 1 1\n"); };
   const std::string at = "a.target, line 2: ";
-  EXPECT_EQ(second_line("x 1 1 1"), at + "'x' is not an index; a line must have an index and three numbers");
-  EXPECT_EQ(second_line("1.5 1 1 1"), at + "'1.5' is not an index; a line must have an index and three numbers");
+  EXPECT_EQ(second_line("x 1 1 1"),
+            at + "'x' is not the index of a vertex; a line must have an index and three numbers");
+  EXPECT_EQ(second_line("1.5 1 1 1"),
+            at + "'1.5' is not the index of a vertex; a line must have an index and three numbers");
   EXPECT_EQ(second_line("1"), at + "x of vertex 1: a number is missing here; add it, or export the file again");
   EXPECT_EQ(second_line("1 1 1"), at + "z of vertex 1: a number is missing here; add it, or export the file again");
   EXPECT_EQ(second_line("1 1 1 # 1"), at + "z of vertex 1: a number is missing here; add it, or export the file again");
@@ -114,7 +116,7 @@ TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong
             at + "the line has '1' after the delta of vertex 1, but must have only an index and three numbers");
   EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file; remove one of them");
   EXPECT_EQ(error_text(gzip("0 0 0 0\n\nq")),
-            "a.target, line 3: 'q' is not an index; a line must have an index and three numbers");
+            "a.target, line 3: 'q' is not the index of a vertex; a line must have an index and three numbers");
 }
 
 TEST(MakeHumanTarget, indices_are_those_of_the_base_and_do_not_wrap_around) {
@@ -126,7 +128,8 @@ TEST(MakeHumanTarget, indices_are_those_of_the_base_and_do_not_wrap_around) {
     EXPECT_TRUE(text.starts_with("a.target, line 1: '" + index + "' is ")) << text;
   }
   EXPECT_EQ(error_text("4 1 1 1"),
-            "a.target, line 1: '4' is not a vertex of the base, whose 4 vertices are counted from 0");
+            "a.target, line 1: '4' is not a vertex of the base, whose 4 vertices are counted from 0; give the base "
+            "that the target was made for");
 }
 
 TEST(MakeHumanTarget, delta_must_not_take_a_coordinate_out_of_float32) {

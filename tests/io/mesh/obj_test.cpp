@@ -156,20 +156,26 @@ TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
 
 TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(error_of(three + "f 1 2 3\nf 1 4 2\nf 1 2 3\n"),
-            "walk.obj, line 5: corner 1 of face 1 refers to vertex 4, but the file has 3 vertices");
+  EXPECT_EQ(
+      error_of(three + "f 1 2 3\nf 1 4 2\nf 1 2 3\n"),
+      "walk.obj, line 5: corner 1 of face 1 refers to vertex 4, but the file has 3 vertices; export the file again");
   EXPECT_EQ(error_of(three + "f 1 2 -4\nv 0 0 0"),
             "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
-            "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1");
+            "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1; export the "
+            "file again");
   // The reader skips faces with fewer than three corners, so this file has no faces.
-  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file has no faces (lines that begin with f)");
-  EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
-            "walk.obj, line 4: corner 1 of face 0 refers to vertex 5, but the file has 3 vertices");
+  EXPECT_EQ(error_of(three + "f 1 2\n"),
+            "walk.obj, line 4: the file has no faces (lines that begin with f); export a mesh with faces");
+  EXPECT_EQ(
+      error_of(three + "f 1 5\nf 1 2 3\n"),
+      "walk.obj, line 4: corner 1 of face 0 refers to vertex 5, but the file has 3 vertices; export the file again");
   EXPECT_EQ(error_of(three + "f 1 2 4294967298\n"),
-            "walk.obj, line 4: corner 2 of face 0 refers to vertex 4294967298, but the file has 3 vertices");
+            "walk.obj, line 4: corner 2 of face 0 refers to vertex 4294967298, but the file has 3 vertices; export the "
+            "file again");
   EXPECT_EQ(error_of(three + "f 1 2 99999999999999999999\n"),
-            "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is a larger index than a mesh can have");
+            "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is a larger index than a mesh can have; "
+            "export the file again");
   for (const char* const word : {"1.5", "1/x", "1/2/3/4", "/1", "//", "1//1x", "a", "1/2.5", "-", "1-2"})
     EXPECT_TRUE(error_of(three + "f 1 2 " + word + "\n").starts_with("walk.obj, line 4: corner 2 of face 0: ")) << word;
 }
@@ -180,8 +186,9 @@ TEST(ReadObj, place_of_a_statement_of_several_lines_is_its_first_line) {
 }
 
 TEST(ReadObj, file_without_vertices_or_faces_is_an_error) {
-  EXPECT_EQ(error_of(""), "walk.obj, line 1: the file has no vertices (lines that begin with v)");
-  EXPECT_EQ(error_of("v 0 0 0\nl 1 1\n"), "walk.obj, line 2: the file has no faces (lines that begin with f)");
+  EXPECT_EQ(error_of(""), "walk.obj, line 1: the file has no vertices (lines that begin with v); export a mesh");
+  EXPECT_EQ(error_of("v 0 0 0\nl 1 1\n"),
+            "walk.obj, line 2: the file has no faces (lines that begin with f); export a mesh with faces");
 }
 
 TEST(ReadObj, strange_bytes_do_not_reach_the_message) {
@@ -292,9 +299,9 @@ TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
 TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto notes_of = [&](const std::string& rest) { return shading_of(three + rest).notes; };
-  EXPECT_EQ(
-      notes_of("vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
-      (std::vector<std::string>{"1 corner refers to a normal that the file does not have, and is read without one"}));
+  EXPECT_EQ(notes_of("vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
+            (std::vector<std::string>{
+                "1 corner refers to a normal that the file does not have, so this normal is left out"}));
   for (const char* const corner :
        {"3//-1", "3//0", "3//4294967296", "3//99999999999999999999", "3//4294967295", "3//-9999999999"}) {
     const MeshFrame mesh = shading_of(three + "f 1 2 " + corner + "\nvn 0 0 1\n");

@@ -112,7 +112,9 @@ TEST(ReadPly, velocity_that_is_not_whole_or_no_number_is_an_error_where_it_is_as
   const std::string half = moving_file("vx", "vy", "speed"),
                     list = replaced(moving_file("vx", "vy", "vz"), "float vx", "list uchar float vx"),
                     broken = replaced(moving_file("vx", "vy", "vz"), "3.5", "nan");
-  EXPECT_EQ(said(half), "walk.ply, header: the velocity of the vertices is incomplete, since they have no property vz");
+  EXPECT_EQ(said(half),
+            "walk.ply, header: the velocity of the vertices is incomplete, since they have no property vz; add it, or "
+            "leave all velocities out");
   EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list, but must be a number");
   EXPECT_EQ(said(broken).find("walk.ply, line 15, vertex 0: "), 0U) << said(broken);
   EXPECT_EQ(error_of(half), "no error");
@@ -177,18 +179,22 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   const auto with = [](const std::string& what, const std::string& by) {
     return error_of(replaced(ascii_file(), what, by));
   };
-  EXPECT_EQ(error_of("plx\n"), "walk.ply, line 1: this is not a PLY file, since its first line is not the word ply");
+  EXPECT_EQ(
+      error_of("plx\n"),
+      "walk.ply, line 1: this is not a PLY file, since its first line is not the word ply; export the file again");
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
             "walk.ply, line 2: the header does not end, since the line end_header is missing; export the file again");
   EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"),
-            "walk.ply, line 3: the header has no line that begins with 'format'");
+            "walk.ply, line 3: the header has no line that begins with 'format'; export the file again");
   EXPECT_EQ(with("ascii 1.0", "ascii 1.1"),
-            "walk.ply, line 2: version '1.1' of PLY cannot be read; only 1.0 can be read");
+            "walk.ply, line 2: version '1.1' of PLY cannot be read; export the file as version 1.0");
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
   EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with 'format'"));
   EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
-  EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is not a type of PLY");
-  EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");
+  EXPECT_EQ(with("float y", "float16 y"),
+            "walk.ply, line 5: the type 'float16' is not a type of PLY; export the file again");
+  EXPECT_EQ(with("element face", "elements face"),
+            "walk.ply, line 7: 'elements' is not a keyword of a PLY header; export the file again");
   EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: the line must be: property TYPE NAME"));
   EXPECT_TRUE(
       with("element vertex 4\n", "")
@@ -213,11 +219,11 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
             "walk.ply, line 9: the faces have both vertex_indices and vertex_index; remove one of the two properties");
   EXPECT_EQ(with("float z", "list char float z"),
             "walk.ply, line 6: the coordinate 'z' is a list, but must be a number");
-  EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z");
-  EXPECT_EQ(with("element vertex", "element point"), "walk.ply, line 9: the file has no vertices");
-  EXPECT_EQ(with("vertex 4", "vertex 0"), "walk.ply, line 9: the file has no vertices");
-  EXPECT_EQ(with("element face", "element edge"), "walk.ply, line 9: the file has no faces");
-  EXPECT_EQ(with("face 2", "face 0"), "walk.ply, line 9: the file has no faces");
+  EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z; export the file again");
+  EXPECT_EQ(with("element vertex", "element point"), "walk.ply, line 9: the file has no vertices; export a mesh");
+  EXPECT_EQ(with("vertex 4", "vertex 0"), "walk.ply, line 9: the file has no vertices; export a mesh");
+  EXPECT_EQ(with("element face", "element edge"), "walk.ply, line 9: the file has no faces; export a mesh with faces");
+  EXPECT_EQ(with("face 2", "face 0"), "walk.ply, line 9: the file has no faces; export a mesh with faces");
   EXPECT_EQ(with("vertex_indices", "corners"),
             "walk.ply, line 9: the faces have no property vertex_indices; export the file again");
   EXPECT_EQ(with("element face", "element tristrips"),
@@ -242,7 +248,8 @@ TEST(ReadPly, absurd_counts_are_refused_before_memory_is_taken) {
   }
   for (const char* const count : {"-1", "18446744073709551616", "1e3", "0x4", "4.0", "+4"})
     EXPECT_EQ(error_of(test::ply_header("ascii", count, "1")),
-              std::string("walk.ply, line 3: '") + count + "' is not a valid number of 'vertex' elements");
+              std::string("walk.ply, line 3: '") + count +
+                  "' is not a valid number of 'vertex' elements; correct it, or export the file again");
   // The header declares one row more than the file can hold.
   EXPECT_NE(error_of(test::ply_header("binary_little_endian", "3", "1") + std::string(35, '\0')).find("too short"),
             std::string::npos);
@@ -287,14 +294,17 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
       "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row; export the file again");
   EXPECT_EQ(with("1 0 0", "1 0 1e39"),
             "walk.ply, line 11, vertex 1: '1e39' is too large for float32; write a smaller number");
-  EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
-            "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices");
-  EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
-            "walk.ply, line 14, face 0: corner 1 refers to vertex -1, but the file has 4 vertices");
+  EXPECT_EQ(
+      with("3 0 1 2", "3 0 1 4"),
+      "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices; export the file again");
+  EXPECT_EQ(
+      with("3 0 1 2", "3 0 -1 2"),
+      "walk.ply, line 14, face 0: corner 1 refers to vertex -1, but the file has 4 vertices; export the file again");
   EXPECT_EQ(
       with("4 0 1", "2 0 1"),
       "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row; export the file again");
-  EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has a negative length, -4");
+  EXPECT_EQ(with("4 0 1", "-4 0 1"),
+            "walk.ply, line 15, face 1: a list has a negative length, -4; export the file again");
   EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"),
             "walk.ply, line 14, face 0: '1.0' is not a valid number here; correct it, or export the file again");
   EXPECT_EQ(error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, "4 0 1 2 3\n", "          ")),
@@ -338,12 +348,12 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
   EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)),
             place(32) + ", vertex 2: the coordinate is NaN or infinite; export the file again");
   EXPECT_EQ(with(41, std::string("\3\0\0\0", 4)),
-            place(45) + ", face 0: corner 1 refers to vertex 3, but the file has 3 vertices");
+            place(45) + ", face 0: corner 1 refers to vertex 3, but the file has 3 vertices; export the file again");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
-            place(45) + ", face 0: corner 1 refers to vertex -1, but the file has 3 vertices");
+            place(45) + ", face 0: corner 1 refers to vertex -1, but the file has 3 vertices; export the file again");
   // The only face of the file has no corners, so the reader skips this face.
   EXPECT_EQ(with(36, std::string("\0", 1)),
-            place(37) + ": no face has three or more corners, so the mesh has no normals");
+            place(37) + ": no face has three or more corners, so the mesh has no normals; export a mesh with faces");
   EXPECT_EQ(
       with(36, "\4"),
       place(49) + ", face 0: the file is cut off, since only 0 bytes are left for this row; copy or export it again");

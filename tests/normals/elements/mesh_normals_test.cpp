@@ -212,9 +212,9 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
   EXPECT_EQ(text_of(normals.set_segment(view(kFrom), view(broken))),
             "keyframe 1, vertex 4: the position is NaN or infinite; positions must be finite numbers");
   EXPECT_EQ(text_of(normals.begin_segment(view(few), view(kTo))),
-            "keyframe 0: the keyframe has 5 positions, but the mesh has 6 vertices");
+            "keyframe 0: the keyframe has 5 positions, but the mesh has 6 vertices; give one position for each vertex");
   EXPECT_EQ(normals_at(normals, 0.5), before);
-  EXPECT_EQ(MeshNormals::make(Topology()).error().text(), "the mesh has no faces");
+  EXPECT_EQ(MeshNormals::make(Topology()).error().text(), "the mesh has no faces, so it has no normals; give it faces");
   EXPECT_EQ(MeshNormals::make(pair_of_triangles(), {{ElementKind::kFaces}, Weighting::kAngle}).error().code,
             ErrorCode::kUsage);
   MeshNormals creased = MeshNormals::make(pair_of_triangles(), {{ElementKind::kCorners, true, 181}}).value();

@@ -259,7 +259,8 @@ TEST(SmoothingGroups, must_be_one_for_each_face) {
   const std::vector<std::uint32_t> groups = {1, 1, 1};
   const auto result = NormalGroups::by_smoothing_group(topology, separate_points(4), groups);
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().text(), "the list of smoothing groups has 3 entries for 2 faces");
+  EXPECT_EQ(result.error().text(),
+            "the list of smoothing groups has 3 entries for 2 faces; give one entry for each face");
 }
 
 // ---- groups by split normals ----------------------------------------------------------------------------------------
@@ -314,7 +315,8 @@ TEST(SplitNormals, zero_shares_with_zero_only) {
 
 TEST(SplitNormals, bad_ones_are_errors_with_a_place) {
   const Topology topology = make_triangles(3, {0, 1, 2});
-  EXPECT_EQ(split(topology, {0, 0, 1}).error().text(), "the list of normals has 1 entry for 3 corners");
+  EXPECT_EQ(split(topology, {0, 0, 1}).error().text(),
+            "the list of normals has 1 entry for 3 corners; give one normal for each corner");
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(split(topology, {0, 0, 1, 0, nan, 1, 0, 0, 1}).error().text(),
             "corner 1: the normal is NaN or infinite; give finite normals");
