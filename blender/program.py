@@ -95,7 +95,7 @@ def sentences(text: str) -> list[str]:
     result = []
     for line in text.splitlines():
         line = line.removeprefix("chronormal bake: ").strip()
-        line = re.sub(r", or choose from --plan", "", line)
+        line = re.sub(r", or choose another candidate that --plan lists", "", line)
         for option, label in _OPTIONS.items():
             line = re.sub(re.escape(option) + r"(?![\w-])", f'"{label}"', line)
         if line and not line.startswith("Try: "):

@@ -106,8 +106,9 @@ TEST_F(BakeCli, targets_of_the_file_beyond_the_limit_are_kept_and_end_with_code_
        {"moving.glb -o out.glb --max-targets 1", "moving.glb -o out.glb --force --max-targets 1 --tolerance 90"}) {
     const ProcessResult result = run(options);
     EXPECT_EQ(result.exit_code, 4) << options;
-    EXPECT_NE(result.err.find("has 2 targets of its own, more than 1, and bake removes none; raise --max-targets"),
-              std::string::npos)
+    EXPECT_NE(
+        result.err.find("has 2 targets of its own, more than 1, and bake removes none of these; raise --max-targets"),
+        std::string::npos)
         << result.err;
     EXPECT_EQ(result.err.find("could not bring all errors"), std::string::npos) << result.err;
   }

@@ -191,8 +191,10 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("facing a.obj b.obj", "--direction: the camera is missing");
   expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: the value must be X,Y,Z or");
   expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
-  expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: the direction must not be 0,0,0");
-  expect_misuse("collapse a.obj b.obj --from 1", "--from: the motion has nothing after 1; the motion goes from 0 to 1");
+  expect_misuse("facing a.obj b.obj --direction 0,0,0",
+                "--direction: the direction must not be 0,0,0; give at least one number that is not 0");
+  expect_misuse("collapse a.obj b.obj --from 1",
+                "--from: the motion has nothing after 1; the motion goes from 0 to 1; choose a time in between");
   expect_misuse("collapse a.obj b.obj --to 0", "--to: the motion has nothing before 0");
   expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: the time must be later than that of --from");
   EXPECT_EQ(run("collapse a.obj").exit_code, 3) << "a mesh that stands still is no motion";

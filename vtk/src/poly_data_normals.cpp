@@ -75,7 +75,7 @@ Status check_positions(vtkPolyData* mesh) {
   for (vtkIdType p = 0; p < mesh->GetNumberOfPoints(); ++p) {
     const double* const x = mesh->GetPoint(p);
     if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
-      return invalid_input("point " + std::to_string(p), "the coordinates of the point must be finite");
+      return invalid_input("point " + std::to_string(p), "a coordinate of the point is NaN or infinite");
   }
   return Success{};
 }
@@ -265,7 +265,7 @@ Status check_motion(vtkPolyData* from, vtkPolyData* to) {
   vtkIdType corners = 0;
   for (vtkCellArray* const list : cell_lists(from)) corners += 3 * list->GetNumberOfConnectivityIds();
   if (size(std::max(points, corners)) > std::numeric_limits<std::uint32_t>::max())
-    return invalid_input("", "the mesh has more points or corners than 32 bits can count; split the mesh");
+    return invalid_input("", "the mesh has more points or corners than 32 bits can count");
   if (Status cells = check_cells(from, to); !cells) return cells;
   if (Status before = check_positions(from); !before) return before;
   return check_positions(to);

@@ -278,7 +278,7 @@ vtkSmartPointer<vtkDataSet> vtkChronormalInterpolator::InterpolateMesh(const Ste
     if (motion) continue;
     vtkErrorMacro(<< request.place << motion.error().text() << ", so there is no motion between the steps at times "
                   << request.times[std::min(k, request.from)] << " and " << request.times[std::max(k, request.from)]
-                  << '.');
+                  << ". Give all steps the same points and cells, with finite coordinates.");
     return nullptr;
   }
 

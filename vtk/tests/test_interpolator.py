@@ -418,7 +418,7 @@ class ErrorsTest(unittest.TestCase):
             points[9, 1] = np.nan if time > 0 else 0
             return mesh(points, triangles(4))
 
-        self.assertIn("point 9: the coordinates of the point must be finite", self.error_of(lost))
+        self.assertIn("point 9: a coordinate of the point is NaN or infinite", self.error_of(lost))
 
     def test_errors_in_composite_data_name_the_block(self):
         def make(time, block):

@@ -71,9 +71,10 @@ inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kAngle, "angle", "the angle of the face at the vertex"},
     {Weighting::kUniform, "uniform", "all faces alike"},
     {Weighting::kAreaAngle, "area-angle", "area times angle"},
-    {Weighting::kMax, "max", "the sine of the angle over the lengths of both edges (Max 1999)"},
-    {Weighting::kInverseEdges, "inverse-edges", "the reciprocals of the lengths of both edges"},
-    {Weighting::kInverseRoots, "inverse-roots", "the square roots of the reciprocals of the lengths of both edges"},
+    {Weighting::kMax, "max", "the sine of the angle over the product of the lengths of its two edges (Max 1999)"},
+    {Weighting::kInverseEdges, "inverse-edges", "one over the product of the lengths of the two edges at the vertex"},
+    {Weighting::kInverseRoots, "inverse-roots",
+     "one over the square root of the product of the lengths of the two edges at the vertex"},
 }};
 
 /// The weightings that tools use for shading. If the weighting of stored normals is unknown, only these weightings are

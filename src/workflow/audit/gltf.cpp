@@ -590,7 +590,8 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kGltf);
   if (!options.viewers.empty() && result.rule != AuditRule::kGltf)
-    return Error{ErrorCode::kUsage, "", "viewers can only be chosen with the rule gltf"};
+    return Error{ErrorCode::kUsage, "",
+                 "viewers can only be chosen with the rule gltf; choose this rule, or leave the viewers out"};
   for (const Viewer& viewer : options.viewers) result.viewers.emplace_back().viewer = viewer;
   for (const Error& note : document.notes()) result.notes.push_back(note.text());
   const std::size_t total = count_segments(document, options, only);

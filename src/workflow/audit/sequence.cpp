@@ -156,7 +156,8 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
   const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
   if (count > 1 && count != motion.keyframes.size())
     return invalid_input("", "the normals belong to " + counted(count, "keyframe", "keyframes") +
-                                 ", but the motion has " + grouped(motion.keyframes.size()));
+                                 ", but the motion has " + grouped(motion.keyframes.size()) +
+                                 "; give normals for one keyframe or for all");
   for (std::size_t k = 0; k < count; ++k) {
     const std::vector<float>& values = normals.of_keyframes[k];
     const std::string place = "keyframe " + std::to_string(k);
@@ -290,9 +291,9 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   if (run.is_divided() && (motion.kind == MotionKind::kTargets || options.keep_errors))
-    return Error{
-        ErrorCode::kUsage, "",
-        "a run with --shard or --resume needs a sequence of keyframes, and cannot keep the error of every sample"};
+    return Error{ErrorCode::kUsage, "",
+                 "a run with --shard or --resume needs a sequence of keyframes, and cannot keep the error of every "
+                 "sample; leave both options out"};
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   KeyframeChecksums seen(stream);
   if (run.shard) {

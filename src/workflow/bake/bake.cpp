@@ -418,7 +418,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, Gl
   if (options.most_bytes && result.added_bytes > *options.most_bytes) {
     return invalid_input(document.name(), "the new normals need " + counted(result.added_bytes, "byte", "bytes") +
                                               ", but --max-bytes allows only " + grouped(*options.most_bytes) +
-                                              "; allow more bytes");
+                                              "; raise --max-bytes");
   }
   result.warnings = said_once(warnings);
   result.drivers = drivers_file(document, result.meshes);

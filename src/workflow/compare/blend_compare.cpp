@@ -286,7 +286,9 @@ Status check(const BlendCompareOptions& options) {
   if (options.rows < 1 || options.rows > kMostBlendRows)
     return misuse("", "the number of poses must be from 1 to 10,000");
   if (options.active > 0 && !options.animation.empty())
-    return misuse("", "the number of active targets cannot be chosen for an animation; leave one of the two out");
+    return misuse("",
+                  "an animation itself says which targets are active; leave out either the number of active targets or "
+                  "the animation");
   return Success{};
 }
 
@@ -407,7 +409,9 @@ Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOpt
   Result<BlendSet> set = blend_set_of(star);
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();
-  if (options.active > targets) return misuse("", "the input has only " + counted(targets, "target", "targets"));
+  if (options.active > targets)
+    return misuse("", "the input has only " + counted(targets, "target", "targets") +
+                          "; choose a smaller number of active targets");
   if (const Status status = check_memory("", options.rows, targets); !status) return status.error();
 
   Subject subject;
@@ -485,7 +489,9 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
     return invalid_input(document.name(),
                          "the file has no mesh with both morph targets and normals; export the mesh with both");
   }
-  if (options.active > most) return misuse("", "no mesh has more than " + counted(most, "target", "targets"));
+  if (options.active > most)
+    return misuse("", "no mesh has more than " + counted(most, "target", "targets") +
+                          "; choose a smaller number of active targets");
   const auto progress = [&] {
     if (options.progress) options.progress(std::min(++done, total), total);
   };

@@ -148,10 +148,11 @@ SchemeFigure figure_of(const std::string& name, const ElementBlock& block, const
 Result<FaceFigure> face_figure(const Motion& motion, const FaceFigureOptions& options) {
   const auto misused = [](std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; };
   if (options.segment >= motion.segments.size())
-    return misused("there is no segment " + std::to_string(options.segment) + "; the motion has " +
-                   counted(motion.segments.size(), "segment", "segments") + ", counted from 0");
+    return misused("there is no segment " + std::to_string(options.segment) +
+                   "; choose another, since the motion has " + counted(motion.segments.size(), "segment", "segments") +
+                   ", counted from 0");
   if (options.face >= motion.topology.face_count())
-    return misused("there is no face " + std::to_string(options.face) + "; the mesh has " +
+    return misused("there is no face " + std::to_string(options.face) + "; choose another, since the mesh has " +
                    counted(motion.topology.face_count(), "face", "faces") + ", counted from 0");
   if (options.samples < 2) return misused("the number of samples must be at least 2");
   const std::vector<std::string> names = options.schemes.empty() ? default_schemes() : options.schemes;

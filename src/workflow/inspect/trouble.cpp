@@ -117,11 +117,11 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface(
       "doubled_face", surface.doubled_faces,
       have(faces(surface.doubled_faces.count), surface.doubled_faces.count) + " the vertices of another face",
-      "such faces count twice in vertex normals; remove one of each two");
+      "such faces count twice in vertex normals; remove one face of each such pair");
   troubles.on_surface(
       "repeating_face", surface.repeating_faces,
       have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " the same point at two corners",
-      "a triangle then has no area, and a larger face counts twice in the vertex normal");
+      "a triangle then has no area, and a larger face counts twice in the vertex normal; remove the repeated corner");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
                       "commands that need triangles cut such a face into triangles that do not overlap");
   std::string meaning =
@@ -177,11 +177,11 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
   troubles.add("tangents_stay", tangents,
                have(counted(tangents, "primitive", "primitives"), tangents) +
                    " targets that move positions but have no tangents",
-               tangents_at, "viewers apply normal maps as if the base did not move");
+               tangents_at, "viewers apply normal maps as if the base did not move; export the targets with tangents");
   troubles.add("no_normals", flat, have(counted(flat, "primitive", "primitives"), flat) + " no normals", flat_at,
-               "viewers shade them flat, with a normal for each face");
+               "viewers shade them flat, with a normal for each face; bake --smooth writes smooth normals");
   troubles.add("off_length", lengths, counted(lengths, "stored normal is", "stored normals are") + " not of length 1",
-               length_at, "viewers differ in how they render such normals");
+               length_at, "viewers differ in how they render such normals; scale them to length 1");
 
   std::size_t beyond = 0;
   double lowest = 0, highest = 1;
@@ -197,7 +197,7 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
                "", "targets are only examined here for weights from 0 to 1");
   const std::size_t skinned = gltf.inspection.skinned_nodes;
   troubles.add("skin", skinned, have(counted(skinned, "node", "nodes"), skinned) + " a skin", "",
-               "only audit, bake and report apply the skeleton; all other results are before skinning");
+               "only audit, bake and report apply the skeleton; the results of all other commands are without it");
   const std::size_t without_faces = gltf.inspection.without_faces;
   troubles.add("no_faces", without_faces,
                counted(without_faces, "primitive is", "primitives are") + " points, lines or empty", "",

@@ -47,7 +47,8 @@ Result<ShardRows> open_rows(const std::string& path) {
   const bool is_array = !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
                         found.item_size == sizeof(float) && found.order == std::endian::little;
   if (!is_array || end == file->size())
-    return invalid_input(path, "this file was not written by sample --shard, but is " + found.text());
+    return invalid_input(
+        path, "this file was not written by sample --shard, since it is " + found.text() + "; give only shards");
   if (file->size() - end > kLongestEndOfPart) return invalid_input(path, std::string(kDamagedPart));
   std::string text(static_cast<std::size_t>(file->size() - end), '\0');
   if (Status status = file->read(end, text); !status) return status.error();

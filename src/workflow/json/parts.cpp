@@ -33,7 +33,8 @@ class Numbers {
   std::size_t count() {
     const double value = real();
     if (value >= 0 && value <= kMostCount && value == std::floor(value)) return static_cast<std::size_t>(value);
-    list_.complain("number " + std::to_string(next_ - 1) + " of the list must be a count; make this shard again");
+    list_.complain("number " + std::to_string(next_ - 1) +
+                   " of the list must be a whole number of at least 0; make this shard again");
     return 0;
   }
   [[nodiscard]] bool at_end() const { return next_ >= list_.size(); }
@@ -296,7 +297,8 @@ ComparisonShard read_comparison(const JsonView& part) {
   each_item(part, "segments", [&](const JsonView& segment) {
     ComparedSegment found = read_compared(segment);
     if (found.schemes.size() != tallies)
-      segment.complain("the segment must have sums of errors for each scheme and for linear; make this shard again");
+      segment.complain(
+          "the segment must have sums of errors for each scheme, among them linear; make this shard again");
     shard.found.push_back(std::move(found));
   });
   if (c.schemes.empty()) part.complain("the shard has no schemes; make the shard again");

@@ -65,22 +65,28 @@ QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& win
     normals.insert(normals.end(), {crossing.normal.x, crossing.normal.y, crossing.normal.z});
   }
   const auto count = [](auto value) { return static_cast<double>(value); };
-  return {
-      "contain",
-      {{"segments", "segments examined", count(segments)},
-       {"points", "points", count(inside.size())},
-       {"inside", "points that are inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
-       {"crossings", "times a point crosses the surface", count(all.size())},
-       {"inward", "times a point crosses the surface inward", count(std::count(inward.begin(), inward.end(), 1))}},
-      {{"crossing",
-        "crossings, by point and time",
-        {{"point", std::move(points)},
-         {"time", std::move(times)},
-         {"segment", std::move(of_segments)},
-         {"face", std::move(faces)},
-         {"inward", std::move(inward)},
-         {"normal", std::move(normals), 3}}},
-       {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
+  return {"contain",
+          {{"segments", worded(segments, "segment examined", "segments examined"), count(segments)},
+           {"points", worded(inside.size(), "point", "points"), count(inside.size())},
+           {"inside",
+            worded(std::count(inside.begin(), inside.end(), 1), "point that is inside at the first instant",
+                   "points that are inside at the first instant"),
+            count(std::count(inside.begin(), inside.end(), 1))},
+           {"crossings", worded(all.size(), "time a point crosses the surface", "times a point crosses the surface"),
+            count(all.size())},
+           {"inward",
+            worded(std::count(inward.begin(), inward.end(), 1), "time a point crosses the surface inward",
+                   "times a point crosses the surface inward"),
+            count(std::count(inward.begin(), inward.end(), 1))}},
+          {{"crossing",
+            "crossings, by point and time",
+            {{"point", std::move(points)},
+             {"time", std::move(times)},
+             {"segment", std::move(of_segments)},
+             {"face", std::move(faces)},
+             {"inward", std::move(inward)},
+             {"normal", std::move(normals), 3}}},
+           {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
 }
 
 }  // namespace

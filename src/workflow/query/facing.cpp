@@ -151,7 +151,8 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
       return Error{ErrorCode::kUsage, option,
                    "a coordinate is NaN, infinite or too large for float32; give finite numbers of at most 3.4e38"};
   }
-  if (!view.is_eye && view.from == Vec3d{}) return Error{ErrorCode::kUsage, option, "the direction must not be 0,0,0"};
+  if (!view.is_eye && view.from == Vec3d{})
+    return Error{ErrorCode::kUsage, option, "the direction must not be 0,0,0; give at least one number that is not 0"};
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -202,16 +203,23 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const std::string one(one_element(elements.kind)), all(element_kind_name(elements.kind));
   QueryAnswer answer{
       "facing",
-      {{"segments", "segments examined", count(parts.value().size())},
-       {all, all + " in each segment", count(asked)},
-       {"always_front", "times a " + one + " shows its front during a whole segment", count(always_front)},
-       {"always_back", "times a " + one + " shows its back during a whole segment", count(always_back)},
-       {"changing", "times a " + one + " changes sides, or is seen edge-on at an instant",
+      {{"segments", worded(parts.value().size(), "segment examined", "segments examined"), count(parts.value().size())},
+       {all, worded(asked, one, all) + " in each segment", count(asked)},
+       {"always_front", worded(always_front, "time a ", "times a ") + one + " shows its front during a whole segment",
+        count(always_front)},
+       {"always_back", worded(always_back, "time a ", "times a ") + one + " shows its back during a whole segment",
+        count(always_back)},
+       {"changing",
+        worded(pairs - always_front - always_back, "time a ", "times a ") + one +
+            " changes sides, or is seen edge-on at an instant",
         count(pairs - always_front - always_back)}},
       {}};
-  answer.tables.push_back(table_of("", "intervals that show the front", {{one, std::move(numbers)}}, std::move(when)));
+  answer.tables.push_back(
+      table_of("", "intervals of time in which the front shows", {{one, std::move(numbers)}}, std::move(when)));
   if (!silhouettes) return answer;
-  answer.facts.push_back({"silhouettes", "times an edge is a silhouette", count(edge_faces.size() / 2)});
+  answer.facts.push_back(
+      {"silhouettes", worded(edge_faces.size() / 2, "time an edge is a silhouette", "times an edge is a silhouette"),
+       count(edge_faces.size() / 2)});
   answer.tables.push_back(table_of("silhouette", "silhouette edges",
                                    {{"vertices", std::move(edge_vertices), 2}, {"faces", std::move(edge_faces), 2}},
                                    std::move(silhouette_when)));

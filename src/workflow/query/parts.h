@@ -35,6 +35,12 @@ namespace chronormal::inline internal {
                                   "the answer for every " + std::string(what) + " of every segment");
 }
 
+/// Returns the meaning of a fact in the right number: `one` for the count 1, and `several` for all other counts.
+template <class Count>
+[[nodiscard]] std::string worded(Count count, std::string_view one, std::string_view several) {
+  return std::string(count == 1 ? one : several);
+}
+
 /// The vertices or corners about whose normals the caller asks. Each output has a vertex and an element. The element is
 /// the group of faces that determine the normal of the output.
 class AskedOutputs {

@@ -164,31 +164,35 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
   const auto number = [](std::size_t value) { return static_cast<double>(value); };
   const auto mean_off = [](const Rows& of) { return of.judged == 0 ? 0 : of.sum_off / static_cast<double>(of.judged); };
   const std::string all(element_kind_name(elements.kind));
-  QueryAnswer answer{"shutter",
-                     {{"segments", "segments examined", number(parts.value().size())},
-                      {all, all + " in each segment", number(asked)},
-                      {"largest_error", "largest possible error of an average normal, as the length of the difference",
-                       *std::max_element(rows.error.begin(), rows.error.end())},
-                      {"mean_ends_off",
-                       "degrees, average angle between the average normal and the bisector of the normals at both ends",
-                       mean_off(rows)},
-                      {"largest_ends_off",
-                       "degrees, largest angle between the average normal and the bisector of the normals at both ends",
-                       rows.largest_off}},
-                     {}};
+  QueryAnswer answer{
+      "shutter",
+      {{"segments", worded(parts.value().size(), "segment examined", "segments examined"),
+        number(parts.value().size())},
+       {all, worded(asked, one_element(elements.kind), all) + " in each segment", number(asked)},
+       {"largest_error", "largest possible error of an average normal, as the length of the difference",
+        *std::max_element(rows.error.begin(), rows.error.end())},
+       {"mean_ends_off",
+        "average angle in degrees between the average normal and the bisector of the normals at both ends",
+        mean_off(rows)},
+       {"largest_ends_off",
+        "largest angle in degrees between the average normal and the bisector of the normals at both ends",
+        rows.largest_off}},
+      {}};
   answer.tables.push_back(std::move(rows).table(
       "", "average normals while the shutter is open, and normals half way between the ends", elements.kind, true));
   if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
-    answer.facts.push_back({"span_mean_ends_off",
-                            "degrees, average angle between the average normal over the whole time and the bisector of "
-                            "the normals at its ends",
-                            mean_off(whole)});
-    answer.facts.push_back({"span_largest_ends_off",
-                            "degrees, largest angle between the average normal over the whole time and the bisector of "
-                            "the normals at its ends",
-                            whole.largest_off});
+    answer.facts.push_back(
+        {"span_mean_ends_off",
+         "average angle in degrees between the average normal over the whole time and the bisector of "
+         "the normals at its ends",
+         mean_off(whole)});
+    answer.facts.push_back(
+        {"span_largest_ends_off",
+         "largest angle in degrees between the average normal over the whole time and the bisector of "
+         "the normals at its ends",
+         whole.largest_off});
     answer.tables.push_back(
         std::move(whole).table("span", "average normals over the whole time", elements.kind, false));
   }

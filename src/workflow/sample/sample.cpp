@@ -48,7 +48,8 @@ std::vector<float> positions_at(const Segment& segment, double t) {
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
-      return misuse(mover + " vertex " + std::to_string(i / 3) + " so far that float32 cannot hold its position");
+      return misuse(mover + " vertex " + std::to_string(i / 3) +
+                    " so far that float32 cannot hold its position; use smaller weights");
   }
   Motion::Keyframe pose;
   pose.set_positions(positions.high(), positions.low());
@@ -139,7 +140,8 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
       return misuse("the mesh does not move, so a scheme has nothing to interpolate; leave the scheme out");
     if (options.stepping && options.stepping->steps == 0) return misuse("the number of steps must be at least 1");
     if (options.stepping && !scheme.value()->sequential_operations())
-      return misuse(options.scheme + " cannot go step by step, since it computes every normal on its own");
+      return misuse(options.scheme +
+                    " cannot go step by step, since it computes every normal on its own; leave the steps out");
   }
   NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
@@ -200,7 +202,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto& [steps, anchor_interval] = *options_.stepping;
   const auto index = static_cast<std::size_t>(std::llround(t * static_cast<double>(steps)));
   if (!(std::fabs(t - static_cast<double>(index) / static_cast<double>(steps)) <= kLargestStepError))
-    return misuse("the steps do not include t = " + rounded_text(time, {0, 1}));
+    return misuse("the steps do not include t = " + rounded_text(time, {0, 1}) + "; choose a time at which a step is");
   std::vector<float> at_random(normals.size());
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);

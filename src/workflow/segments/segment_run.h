@@ -168,7 +168,8 @@ struct RecordedRun : SegmentRun {
       are_first = are_first && known[i].segment == own.first + i && fits(known[i]);
     if (!are_first)
       return Error{ErrorCode::kUsage, "",
-                   std::string("the segments that were computed before belong to another ") + task};
+                   std::string("the segments that were computed before belong to another ") + task +
+                       "; compute all segments again"};
     for (const Found& one : known) {
       add(one);
       if (shard) found.push_back(one);
@@ -212,7 +213,8 @@ template <class Whole, class Found, class AreOfOne>
     ShardOf<Whole, Found>& shard = shards[i];
     if (const Status known = parts.add("shard " + std::to_string(i), shard.checksums); !known) return known.error();
     if (!are_of_one(shard.whole, shards.front().whole))
-      return Error{ErrorCode::kUsage, "", std::string("the shards belong to two different ") + tasks};
+      return Error{ErrorCode::kUsage, "",
+                   std::string("the shards belong to two different ") + tasks + "; merge each of them separately"};
     std::move(shard.found.begin(), shard.found.end(), std::back_inserter(all));
   }
   std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.segment < b.segment; });

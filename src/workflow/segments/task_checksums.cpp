@@ -110,7 +110,8 @@ Status KnownParts::add(const std::string& part, const TaskChecksums& checksums) 
     const auto [known, is_new] = first_.try_emplace(name, checksum, parts_.size() - 1);
     if (is_new || known->second.first == checksum) continue;
     Error error{ErrorCode::kUsage, part,
-                "this shard does not belong to " + parts_[known->second.second] + ", since they differ in " + name};
+                "this shard does not belong to " + parts_[known->second.second] + ", since they differ in " + name +
+                    "; merge only shards of one run"};
     if (!name.starts_with(kKeyframe)) return error;
     if (!keyframe) keyframe = std::move(error);
   }

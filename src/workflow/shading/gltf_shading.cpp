@@ -78,7 +78,8 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
     GltfGeometry& geometry = read.value();
     const std::size_t count = geometry.positions.size() / 3;
     if (vertices + count >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(mesh_place(document, shading.mesh), "the mesh has more vertices than can be read");
+      return invalid_input(mesh_place(document, shading.mesh),
+                           "the mesh has more vertices than can be read; split the mesh");
     shading.parts.push_back(
         {std::nullopt, shading.mesh, p, vertices, count, corners.size() / 3, geometry.corners.size() / 3});
     if (vertices == 0) {
@@ -108,7 +109,8 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
     vertices += count;
   }
   if (shading.parts.empty())
-    return invalid_input(mesh_place(document, shading.mesh), "the mesh has no faces, so it has no normals");
+    return invalid_input(mesh_place(document, shading.mesh),
+                         "the mesh has no faces, so it has no normals; export a mesh with faces");
   shading.normals.resize(3 * vertices);
   if (has_tangents) shading.tangents.resize(4 * vertices);
   Result<Topology> topology = Topology::triangles(vertices, std::move(corners));

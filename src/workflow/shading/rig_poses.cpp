@@ -168,7 +168,8 @@ Status check_poses(std::span<const RigPose> poses, const GltfDocument& document)
       if (std::find(names.begin(), names.end(), named.target) != names.end()) continue;
       const std::string nearest = nearest_name(named.target, names);
       return invalid_input(named.place, "no mesh has a target '" + named.target + "'" +
-                                            (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+                                            (nearest.empty() ? std::string("; give the name of a target of the file")
+                                                             : "; did you mean '" + nearest + "'?"));
     }
     if (!pose.named.empty() || std::find(counts.begin(), counts.end(), pose.in_order.size()) != counts.end()) continue;
     return invalid_input(pose.place, "the pose has " + counted(pose.in_order.size(), "weight", "weights") +

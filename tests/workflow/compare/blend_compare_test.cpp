@@ -455,7 +455,8 @@ TEST(BlendCompare, files_without_anything_to_compare_say_so) {
 
 TEST(BlendCompare, an_animation_and_a_number_of_active_targets_are_not_both_taken) {
   expect_error(try_comparing(random_sheet(2, 4, 1, 0.1).file(), {.active = 1, .animation = "walk"}), ErrorCode::kUsage,
-               "the number of active targets cannot be chosen for an animation; leave one of the two out");
+               "an animation itself says which targets are active; leave out either the number of active targets or "
+               "the animation");
 }
 
 TEST(BlendCompare, so_many_targets_that_their_weights_do_not_fit_are_refused_before_anything_is_read) {

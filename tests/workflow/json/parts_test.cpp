@@ -228,7 +228,7 @@ TEST(KnownSegments, those_of_another_run_are_refused) {
   CompareRun untallied;
   untallied.known.resize(1);
   EXPECT_EQ(compare(stream, {}, untallied).error().text(),
-            "the segments that were computed before belong to another comparison");
+            "the segments that were computed before belong to another comparison; compute all segments again");
   CompareRun second_half, first_half;
   second_half.shard = Shard{1, 2};
   ASSERT_TRUE(compare(stream, {}, second_half).ok());
@@ -238,7 +238,7 @@ TEST(KnownSegments, those_of_another_run_are_refused) {
   AuditRun too_many;
   too_many.known.resize(9);
   EXPECT_EQ(audit(stream, {}, {}, too_many).error().text(),
-            "the segments that were computed before belong to another audit");
+            "the segments that were computed before belong to another audit; compute all segments again");
   EXPECT_EQ(read_compared_segment("{\"segment\": 1, \"tallies\": [[1]]}", "journal").error().place,
             "journal, /tallies/0");
 }
@@ -387,7 +387,7 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
     EXPECT_EQ(merged_arrays({first, foreign, third}),
               "this shard does not belong to " + first + ", since they differ in the options");
   EXPECT_EQ(merged_arrays({first, folder / "all.npy"}),
-            "this file was not written by sample --shard, but is (5, 80, 3) of '<f4'");
+            "this file was not written by sample --shard, since it is (5, 80, 3) of '<f4'; give only shards");
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
 }
 

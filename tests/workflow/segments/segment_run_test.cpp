@@ -129,7 +129,8 @@ TEST(SegmentRun, what_is_known_must_be_the_first_segments_of_the_share) {
     run.known = known;
     const Status refused = run_over(stream, 1, run, sum);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text(), "the segments that were computed before belong to another test");
+    EXPECT_EQ(refused.error().text(),
+              "the segments that were computed before belong to another test; compute all segments again");
   }
 }
 

@@ -361,7 +361,8 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
 TEST(GltfShading, mesh_without_faces_is_refused) {
   GltfBuilder builder;
   builder.add_node(builder.add_mesh(GltfBuilder::primitive(builder.add_positions({0, 0, 0}), {}, {}, 0)));
-  EXPECT_EQ(error_of(builder), "a.gltf, /meshes/0: the mesh has no faces, so it has no normals");
+  EXPECT_EQ(error_of(builder),
+            "a.gltf, /meshes/0: the mesh has no faces, so it has no normals; export a mesh with faces");
 }
 
 TEST(ShownDirection, is_turned_as_the_base_is_and_stays_on_the_side_that_the_author_shows) {

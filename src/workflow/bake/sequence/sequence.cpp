@@ -94,9 +94,9 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
-      return invalid_input(
-          "keyframe " + std::to_string(times.size()),
-          "this keyframe is so close to the one before that glTF cannot tell their times apart; leave one of them out");
+      return invalid_input("keyframe " + std::to_string(times.size()),
+                           "this keyframe is so close to the one before that glTF cannot tell their times apart; leave "
+                           "one of the two keyframes out");
     times.push_back(time);
   }
   return times;
@@ -303,10 +303,9 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
     const double t = static_cast<double>(at - s * kKeySteps) / kKeySteps;
     times.push_back(static_cast<float>((1 - t) * double{keyframes[s]} + t * double{keyframes[s + 1]}));
     if (k > 0 && !(times[k] > times[k - 1]))
-      return invalid_input(
-          "keyframe " + std::to_string(s),
-          "the next keyframe is so close in time that no key fits between the two in float32; leave one of "
-          "them out");
+      return invalid_input("keyframe " + std::to_string(s),
+                           "the next keyframe is so close in time that no key fits between the two in float32; leave "
+                           "one of the two keyframes out");
     if (at % kKeySteps != 0) ++report.keys->in_between;
     if (k == 0) continue;
     const Result<KeyPose> pose = key_pose(normals, at);
@@ -317,9 +316,9 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   }
   report.keys->left_out = segments + 1 + report.keys->in_between - report.keys->count;
   if (keys.beyond > 0)
-    report.warnings.push_back(
-        "in " + std::to_string(keys.beyond) + (keys.beyond == 1 ? " case" : " cases") +
-        ", a normal vanishes or turns too fast between two keyframes, and its error exceeds the tolerance there");
+    report.warnings.push_back("in " + std::to_string(keys.beyond) + (keys.beyond == 1 ? " case" : " cases") +
+                              ", a normal vanishes or turns too fast between two keyframes, and its error exceeds the "
+                              "tolerance there; add keyframes, or use --encode exact");
   return times;
 }
 
@@ -342,7 +341,7 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
       warnings.push_back(counted(targets, "target is", "targets are") + " too many for " + std::string(viewer.title) +
-                         "; " + std::string(viewer.beyond));
+                         "; " + std::string(viewer.beyond) + ", so bake fewer keyframes");
 }
 
 // Returns the options with all viewers among the viewers for which the bake is made. A sequence has no candidates to
@@ -364,9 +363,12 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
   if (encoding == BakeEncoding::kKeys) {
     if (options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
-      return Error{ErrorCode::kUsage, "", "--encode keys can only be used with --weighting area"};
+      return Error{
+          ErrorCode::kUsage, "",
+          "--encode keys can only be used with --weighting area; leave --weighting out, or choose another --encode"};
     if (!(tolerance >= kLeastKeyTolerance))
-      return Error{ErrorCode::kUsage, "", "the tolerance of --encode keys must be at least 0.001 degrees"};
+      return Error{ErrorCode::kUsage, "",
+                   "the tolerance of --encode keys must be at least 0.001 degrees; choose a larger --tolerance"};
   }
   const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
@@ -417,7 +419,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
     report.warnings.push_back(
         std::to_string(crossing) +
         (crossing == 1 ? " polygon crosses itself, so its" : " polygons cross themselves, so their") +
-        " triangles overlap in the file");
+        " triangles overlap in the file; split such polygons to avoid this");
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (encoding == BakeEncoding::kKeys) {

@@ -243,7 +243,7 @@ Status SequenceFile::check(std::uint64_t more) const {
   if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
   if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
   return invalid_input("", "the result would have more than " + counted(builder_.most_bytes(), "byte", "bytes") +
-                               ", which is the limit of its size");
+                               ", the largest size that is allowed; bake fewer keyframes");
 }
 
 Result<std::size_t> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times,

@@ -100,12 +100,12 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
     warnings.push_back(
         {label_of(mesh, baked),
          "the tangents of " + counted(baked.left_tangents, "target", "targets") +
-             " no longer fit the new normals, because --max-bytes leaves no room for new tangents; allow more bytes"});
+             " no longer fit the new normals, because --max-bytes leaves no room for new tangents; raise --max-bytes"});
   }
   if (options.most_targets && mesh.target_count > *options.most_targets) {
     warnings.push_back({label_of(mesh, baked), "the mesh has " + counted(mesh.target_count, "target", "targets") +
                                                    " of its own, more than " + std::to_string(*options.most_targets) +
-                                                   ", and bake removes none; raise --max-targets"});
+                                                   ", and bake removes none of these; raise --max-targets"});
     return;
   }
   const auto chosen =
@@ -121,7 +121,8 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
             .append(" (" + std::to_string(viewer.bits) + " bits)");
     warnings.push_back({label_of(mesh, baked), "the errors are within " + within + " before compression, but reach " +
                                                    with_degrees(rounded_text(rounded_up(chosen->rounded))) +
-                                                   " after compression by " + names});
+                                                   " after compression by " + names +
+                                                   "; store normals with more bits when you compress the file"});
     return;
   }
   if (baked.already_baked) {
@@ -181,13 +182,15 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.undriven > 0) {
     warn("no animation moves " + counted(baked.undriven, "target", "targets") +
-         "; if a program sets their weights, the normals are only approximately right");
+         "; if a program sets their weights, the normals are only approximately right; let an animation of the file "
+         "move them too");
   }
   if (!baked.unmarked_nodes.empty()) {
     const std::size_t more = baked.unmarked_nodes.size() - 1;
     warn("the extras of node " + std::to_string(baked.unmarked_nodes.front()) +
          (more == 0 ? "" : " and of " + counted(more, "more node", "more nodes")) +
-         " are not a JSON object, so only the extras of the mesh say how to drive the correction targets");
+         " are not a JSON object, so only the extras of the mesh say how to drive the correction targets; make them an "
+         "object to have this in both");
   }
   if (baked.rescaled > 0) {
     warn(counted(baked.rescaled, "stored base normal is", "stored base normals are") +
@@ -195,7 +198,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.stilled > 0) {
     warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
-         " normals without moving positions; these normals now stay as they are, since the surface does not change");
+         " normals without moving positions; bake has removed this turn, since the surface does not change");
   }
   if (baked.without_stored > 0) {
     warn(counted(baked.without_stored, "stored base normal is", "stored base normals are") +
@@ -206,7 +209,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     if (times > kLargeTimes || (times > kLargeTimesOfMany && baked.extras.size() > kFewExtras)) {
       warn(counted(baked.extras.size(), "correction target makes", "correction targets make") + " the file " +
            rounded_text(rounded_up(times)) +
-           " times as large; for a smaller file leave --tolerance out, or choose from --plan");
+           " times as large; for a smaller file, leave --tolerance out, or choose another candidate that --plan lists");
     }
   }
   if (baked.without_base > 0) {
