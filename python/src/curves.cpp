@@ -76,7 +76,7 @@ class Curves : public ZeroedObject {
                                          normals.shape(2) == 3;
     if (!(fits))
       refuse("normals", "the shape must be (" + (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) +
-                            ", 3), but is " + shape_text(normals));
+                            ", 3), a vector for each normal, but is " + shape_text(normals));
     const std::size_t count = times.count() * size();
     std::vector<float> exact(3 * count), degrees(count);
     write(times, chosen.threads(), exact.data());
@@ -173,8 +173,8 @@ class Blend : public ZeroedObject {
     const auto k = static_cast<py::ssize_t>(targets_);
     const bool is_one = weights.ndim() == 1;
     if (!((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k))
-      refuse("weights", "the shape must be (" + std::to_string(k) + ",) or (T, " + std::to_string(k) + "), but is " +
-                            shape_text(weights));
+      refuse("weights", "the shape must be (" + std::to_string(k) + ",) or (T, " + std::to_string(k) +
+                            "), with a weight for each target, but is " + shape_text(weights));
     const ChosenThreads chosen(threads);
     const std::size_t rows = is_one ? 1 : static_cast<std::size_t>(weights.shape(0)), count = size();
     py::array result = result_array(out, is_one ? std::nullopt : std::optional(rows), count);
@@ -243,7 +243,7 @@ py::array result_array(const py::object& out, std::optional<std::size_t> rows, s
                          : array.ndim() == 2 && array.shape(0) == n && array.shape(1) == 3;
   if (!fits) {
     refuse("out", "the shape must be (" + (rows ? std::to_string(*rows) + ", " : "") + std::to_string(n) +
-                      ", 3), but is " + shape_text(array));
+                      ", 3), a vector for each normal, but is " + shape_text(array));
   }
   require(array.writeable(), "out", "the array is read-only; give one that can be written");
   return array;

@@ -136,7 +136,7 @@ Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offs
   const auto keyframes = static_cast<std::size_t>(positions.shape(0)),
              vertices = static_cast<std::size_t>(positions.shape(1));
   require(times.ndim() == 1 && static_cast<std::size_t>(times.size()) == keyframes, "times",
-          "there must be one time for each keyframe");
+          "there must be one time for each keyframe; give as many times as keyframes");
   Motion motion;
   motion.topology = topology_of(vertices, offsets, corners);
   for (std::size_t k = 0; k < keyframes; ++k) {

@@ -185,7 +185,7 @@ class BlendTest(unittest.TestCase):
     def test_what_does_not_fit_is_said_with_its_place(self):
         base, target, faces = sheet()
         blend = cn.blend(base, [target - base], faces)
-        for call, words in ((lambda: blend.unit_normals([1, 2]), r"weights: the shape must be \(1,\) or \(T, 1\), but is \(2,\)"),
+        for call, words in ((lambda: blend.unit_normals([1, 2]), r"weights: the shape must be \(1,\) or \(T, 1\), with a weight for each target, but is \(2,\)"),
                             (lambda: cn.blend(base, [target[:3]], faces), r"deltas\[0\]: the target must have a delta for each vertex of the mesh, which has 12, but the target has 3"),
                             (lambda: cn.blend(base, [([5, 2], target[:2])], faces), "target 0, entry 1"),
                             (lambda: cn.blend(base, [([99], target[:1])], faces), "target 0, entry 0"),
@@ -235,7 +235,7 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: curves.unit_normals(0.5, out=np.zeros((11, 3), float32)), r"out: the shape must be .*but is \(11, 3\)"),
                 (lambda: curves.unit_normals([0.5], out=np.zeros((12, 3), float32)), r"must be \(1, 12, 3\)"),
                 (lambda: curves.unit_normals(0.5, out=read_only), "out: the array is read-only; give one that can be written"),
-                (lambda: curves.errors(0.5, p0[:3]), r"normals: the shape must be \(12, 3\), but is \(3, 3\)")):
+                (lambda: curves.errors(0.5, p0[:3]), r"normals: the shape must be \(12, 3\), a vector for each normal, but is \(3, 3\)")):
             with self.assertRaisesRegex(ValueError, words):
                 call()
 

@@ -87,7 +87,8 @@ TEST_F(QueryContainCli, refusals_say_what_is_wrong) {
   expect("a.obj b.obj --points none.npy", 1, "none.npy: ");
   expect("a.obj b.obj --points a.obj", 3, "a.obj, header: this is not a NumPy array");
   folder_.write("flat.npy", NpyBytes({3}, std::vector<double>{1, 2, 3}).bytes());
-  expect("a.obj b.obj --points flat.npy", 3, "points must be an array (n, 3), or (n, 2, 3) if they move");
+  expect("a.obj b.obj --points flat.npy", 3,
+         "points must be an array of float32 or float64 with the shape (n, 3), or (n, 2, 3) if they move");
   folder_.write("far.npy", NpyBytes({1, 2, 3}, std::vector<double>{1, 2, 3, 4, 1e39, 6}).bytes());
   expect("a.obj b.obj --points far.npy", 3, "far.npy, [0, 1, 1]: ");
 }

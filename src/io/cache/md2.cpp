@@ -70,7 +70,7 @@ class Md2Reader {
     if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
       return error(16, "the size of a frame in the header is " + std::to_string(field(16)) + ", but " +
                            counted(vertex_count_, "vertex takes", "vertices take") + " " +
-                           counted(frame_size, "byte", "bytes"));
+                           counted(frame_size, "byte", "bytes") + "; export the file again");
     if (Status status = read_table(32, 52, kTriangleSize, 1, "triangle", "triangles", triangles_); !status)
       return status;
     return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frame", "frames", frames_);
@@ -88,7 +88,7 @@ class Md2Reader {
       return error(begin_at, "the file is cut off, since it should have " +
                                  counted(static_cast<std::uint32_t>(count), one, many) + " from byte " +
                                  std::to_string(begin) + " on, but has only " +
-                                 counted(bytes_.size(), "byte", "bytes"));
+                                 counted(bytes_.size(), "byte", "bytes") + "; copy or export it again");
     table = {static_cast<std::size_t>(count), static_cast<std::size_t>(begin), record_size};
     return Success{};
   }
@@ -102,7 +102,8 @@ class Md2Reader {
         if (vertex >= vertex_count_)
           return invalid_input(binary::place(name_, at) + ", triangle " + std::to_string(f),
                                "corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
-                                   ", but the file has only " + counted(vertex_count_, "vertex", "vertices"));
+                                   ", but the file has only " + counted(vertex_count_, "vertex", "vertices") +
+                                   "; export the file again");
         corners.push_back(vertex);
       }
     }

@@ -229,7 +229,7 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
   const Array& found = array.value();
   const std::size_t step = found.kind == Kind::kText ? 4 : 1;
   if ((found.kind != Kind::kText && found.kind != Kind::kBytes) || found.element_count() != 1)
-    return invalid_input(place, "the array must be a single text, but is " + found.text());
+    return invalid_input(place, "the array must be a single text, but is " + found.text() + "; save it as a string");
   std::string text;
   for (std::size_t at = found.data_begin; at < bytes.size(); at += step) {
     const std::uint32_t c =

@@ -16,7 +16,8 @@ Result<PointPaths> parse_points(std::string_view bytes, const std::string& name)
   if (array.kind != npy::Kind::kFloat || !(moves || (shape.size() == 2 && shape[1] == 3)))
     return invalid_input(
         name,
-        "points must be an array (n, 3), or (n, 2, 3) if they move, of float32 or float64, but are " + array.text());
+        "points must be an array of float32 or float64 with the shape (n, 3), or (n, 2, 3) if they move, but are " +
+            array.text());
   const auto count = static_cast<std::size_t>(shape[0]);
   const std::size_t ends = moves ? 2 : 1;
   PointPaths paths;

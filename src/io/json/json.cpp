@@ -205,7 +205,8 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
   }
   // The library would skip a second byte order mark, which JSON does not allow.
   if (text.starts_with(kByteOrderMark))
-    return invalid_input(binary::place(name, offset), "the JSON is not valid: it has a second byte order mark");
+    return invalid_input(binary::place(name, offset),
+                         "the JSON is not valid: it has a second byte order mark; remove one of the two");
   // JSON never contains a zero byte. A sparse file may have a terabyte of zero bytes, and the parser would look at each
   // of them, so only the first one is kept.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);

@@ -274,7 +274,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     }
     if (!node.is_object())
       return error("the array has " + std::to_string(node.members.size()) +
-                   (node.members.size() == 1 ? " item, and no item " : " items, and no item ") + token);
+                   (node.members.size() == 1 ? " item, and no item " : " items, and no item ") + token +
+                   "; point to an item that exists");
     // If objects on the way to the value are missing, they are added together with the value as one text.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();

@@ -151,8 +151,8 @@ Result<MeshFrame> ObjReader::read() {
   }
   note(shading_->unknown_normals, " corner refers to a normal that the file does not have, so this normal is left out",
        " corners refer to normals that the file does not have, so these normals are left out");
-  note(shading_->nameless_groups, " line has an s without a smoothing group, and is read as s off",
-       " lines have an s without a smoothing group, and are read as s off");
+  note(shading_->nameless_groups, " line begins with s but names no smoothing group, and is read as 's off'",
+       " lines begin with s but name no smoothing group, and are read as 's off'");
   return mesh;
 }
 

@@ -113,7 +113,7 @@ Status HeaderReader::read_statement(const Words& words) {
 
 Status HeaderReader::read_format(const Words& words) {
   if (has_format_) return error("the header has two lines that begin with format; remove one of them");
-  if (words.size() != 3) return error("the line must be: format ENCODING 1.0");
+  if (words.size() != 3) return error("this line must have the form: format ENCODING 1.0");
   if (words[1] == "ascii") {
     header_.encoding = PlyEncoding::kAscii;
   } else if (words[1] == "binary_little_endian") {
@@ -131,7 +131,7 @@ Status HeaderReader::read_format(const Words& words) {
 }
 
 Status HeaderReader::read_element(const Words& words) {
-  if (words.size() != 3) return error("the line must be: element NAME COUNT");
+  if (words.size() != 3) return error("this line must have the form: element NAME COUNT");
   Element element;
   element.name = words[1];
   const char* const last = words[2].data() + words[2].size();
@@ -151,7 +151,7 @@ Status HeaderReader::read_property(const Words& words) {
     return error("a line that begins with property must come after a line that begins with element");
   const bool is_list = words.size() > 1 && words[1] == "list";
   if (words.size() != (is_list ? 5 : 3))
-    return error("the line must be: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
+    return error("this line must have the form: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
 
   Property property;
   property.is_list = is_list;
@@ -165,7 +165,8 @@ Status HeaderReader::read_property(const Words& words) {
     if (!count_type)
       return error("the type " + scan::quoted(words[2]) + " is not a type of PLY; export the file again");
     if (!is_integer(*count_type))
-      return error("the length of a list must be an integer, but its type is " + scan::quoted(words[2]));
+      return error("the length of a list must be an integer, but its type is " + scan::quoted(words[2]) +
+                   "; export the file again");
     property.count_type = *count_type;
   }
   if (!property_names_.insert(property.name).second)
@@ -179,12 +180,14 @@ Status HeaderReader::assign_role(Property& property) {
   const Element& element = header_.elements.back();
   if (element.name == "vertex" && property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z') {
     if (property.is_list)
-      return error("the coordinate " + scan::quoted(property.name) + " is a list, but must be a number");
+      return error("the coordinate " + scan::quoted(property.name) +
+                   " is a list, but must be a number; export the file again");
     property.role = static_cast<Role>(property.name[0] - 'x');
   }
   if (element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index")) {
     if (!property.is_list || !is_integer(property.type))
-      return error("the property " + scan::quoted(property.name) + " must be a list of integers");
+      return error("the property " + scan::quoted(property.name) +
+                   " must be a list of integers; export the file again");
     for (const Property& other : element.properties) {
       if (other.role == Role::kIndices)
         return error("the faces have both vertex_indices and vertex_index; remove one of the two properties");
@@ -251,8 +254,8 @@ Result<bool> assign_velocities(Header& header, const std::string& name) {
                              "the velocity of the vertices is incomplete, since they have no property " +
                                  std::string(names[c]) + "; add it, or leave all velocities out");
       if (found[c]->is_list)
-        return invalid_input(name + ", header",
-                             "the velocity " + std::string(names[c]) + " is a list, but must be a number");
+        return invalid_input(name + ", header", "the velocity " + std::string(names[c]) +
+                                                    " is a list, but must be a number; export the file again");
       found[c]->role = static_cast<Role>(static_cast<std::size_t>(Role::kVelocityX) + c);
     }
     return true;

@@ -226,7 +226,7 @@ bool is_pattern(std::string_view text) { return text.find_first_of("*?[") != std
 bool close_descriptor(int descriptor) noexcept { return ::_close(descriptor) == 0; }
 
 Error failure(const std::string& path, int system_error) {
-  const std::string reason = system_error == EBUSY   ? "another program is using this file"
+  const std::string reason = system_error == EBUSY   ? "another program is using this file; close it there"
                              : system_error == EPIPE ? "Broken pipe"
                                                      : std::generic_category().message(system_error);
   return Error{ErrorCode::kFailed, path, reason};

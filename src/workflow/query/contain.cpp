@@ -86,7 +86,7 @@ QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& win
              {"face", std::move(faces)},
              {"inward", std::move(inward)},
              {"normal", std::move(normals), 3}}},
-           {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
+           {"", "which points are inside at the first instant", {{"inside", std::move(inside)}}}}};
 }
 
 }  // namespace

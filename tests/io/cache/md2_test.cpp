@@ -64,8 +64,9 @@ TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(error_with(0, "IDP3"),
             "imp.md2, byte 0: this is not an MD2 file, since it does not begin with IDP2; name an .md2 file");
   EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; export the file as version 8");
-  EXPECT_EQ(error_with(16, "\x35"),
-            "imp.md2, byte 16: the size of a frame in the header is 53, but 3 vertices take 52 bytes");
+  EXPECT_EQ(
+      error_with(16, "\x35"),
+      "imp.md2, byte 16: the size of a frame in the header is 53, but 3 vertices take 52 bytes; export the file again");
   EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the number of vertices is 0, but must be at least 1");
   EXPECT_EQ(error_with(32, "\0"s),
             "imp.md2, byte 32: the number of triangles is 0, but must be at least 1; export at least one triangle");
@@ -73,12 +74,13 @@ TEST(ReadMd2, errors_say_where_and_what) {
             "imp.md2, byte 40: the number of frames is 1, but must be at least 2; export at least two frames");
   EXPECT_EQ(error_with(40, "\xFF\xFF\xFF\x7F"),
             "imp.md2, byte 56: the file is cut off, since it should have 2,147,483,647 frames from byte 80 on, but has "
-            "only 184 bytes");
+            "only 184 bytes; copy or export it again");
   EXPECT_EQ(
       error_with(56, "\xFF\xFF\xFF\xFF"),
       "imp.md2, byte 56: the file is cut off, since it should have 2 frames from byte -1 on, but has only 184 bytes");
   EXPECT_EQ(error_with(70, "\3"),
-            "imp.md2, byte 70, triangle 0: corner 1 refers to vertex 3, but the file has only 3 vertices");
+            "imp.md2, byte 70, triangle 0: corner 1 refers to vertex 3, but the file has only 3 vertices; export the "
+            "file again");
   EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s),
             "imp.md2, byte 120, frame 0, vertex 0: the coordinate is NaN or infinite; export the file again");
   EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"),

@@ -158,7 +158,7 @@ TEST(ReadNpz, errors_name_array_and_element) {
         error_of(archive(kPositions, npy(npy_header(type, "(1, 3)"), data))),
         "walk.npz, faces[0, 2]: the face refers to a vertex that does not exist; vertices are counted from 0 to 2");
   EXPECT_EQ(error_of(archive(kPositions, npy(npy_header("<f4", "(1, 3)"), std::string(12, '\0')))),
-            "walk.npz, faces: faces must be an array (faces, 3) of integers, but are (1, 3) of '<f4'");
+            "walk.npz, faces: faces must be an array of integers with the shape (faces, 3), but are (1, 3) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(3,)"), std::string(12, '\0')))),
             "walk.npz, times: times must be an array of 2 numbers, one for each keyframe, but are (3,) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(2,)"), std::string(8, '\0')))),
@@ -332,7 +332,7 @@ TEST(ReadNpz, kind_is_a_string_of_numpy) {
   EXPECT_EQ(error_of(with_kind(text_array("<U4", "star", 4))),
             "walk.npz, kind: kind must be sequence, targets or animation, but is 'star'");
   EXPECT_EQ(error_of(with_kind(npy(npy_header("<i4", "()"), raw<std::int32_t>({1})))),
-            "walk.npz, kind: the array must be a single text, but is () of '<i4'");
+            "walk.npz, kind: the array must be a single text, but is () of '<i4'; save it as a string");
   EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))),
             "walk.npz, kind: the text must be ASCII; save it again without other characters");
   EXPECT_FALSE(error_of(with_kind(npy(npy_header("<U7", "()"), "targets"))).empty());

@@ -310,7 +310,7 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
                        false)
                   .ends_with("it begins with a byte order mark; remove this mark"));
   EXPECT_EQ(GltfFixture("\xEF\xBB\xBF\xEF\xBB\xBF" + test::quad_document().gltf()).error(),
-            "a.gltf, byte 3: the JSON is not valid: it has a second byte order mark");
+            "a.gltf, byte 3: the JSON is not valid: it has a second byte order mark; remove one of the two");
   EXPECT_TRUE(error_of("/extras/\xFF", "1", false).starts_with("the new value is not valid JSON"));
   const auto deep = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
   EXPECT_EQ(error_of("/extras", deep(256), false), "the new value is nested deeper than 256 levels; nest it less");

@@ -190,7 +190,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1);
        }},
-      {"a.gltf, /skins/0/inverseBindMatrices: accessor 0 must be of type MAT4",
+      {"a.gltf, /skins/0/inverseBindMatrices: accessor 0 must be of type MAT4; export the file again",
        [](Skinned& s) { s.builder.json["skins"][0]["inverseBindMatrices"] = 0; }},
       {"a.gltf, /accessors/6: the last row of matrix 1 must be 0, 0, 0, 1; export the file again",
        [](Skinned& s) {
@@ -219,7 +219,8 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
       {attributes +
            "/JOINTS_0: accessor 5 has a componentType that glTF does not allow for this use; export the file again",
        [](Skinned& s) { s.joints(5); }},
-      {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
+      {attributes + "/JOINTS_0: accessor 0 must be of type VEC4; export the file again",
+       [](Skinned& s) { s.joints(0); }},
       {attributes +
            "/WEIGHTS_0: accessor 4 has a componentType that glTF does not allow for this use; export the file again",
        [](Skinned& s) { s.weights(4); }},
@@ -251,11 +252,11 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3");
        }},
-      {sampler + "/output: accessor 7 must be of type VEC4",
+      {sampler + "/output: accessor 7 must be of type VEC4; export the file again",
        [](Skinned& s) {
          s.animate("rotation", {1, 1, 1, 1, 1, 1}, "VEC3");
        }},
-      {sampler + "/interpolation: interpolation must be LINEAR, STEP or CUBICSPLINE",
+      {sampler + "/interpolation: interpolation must be LINEAR, STEP or CUBICSPLINE; export the file again",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["samplers"][0]["interpolation"] = "CURVED";

@@ -193,7 +193,8 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
                "the data URI has " + std::to_string(builder_.buffer.size() - 1) + " bytes, but byteLength is " + size +
                    "; export the file again");
   expect_error("data:text/plain;base64," + good,
-               "the data URI of a buffer must begin with data:application/octet-stream;base64, or "
+               "the data URI of a buffer has another type than glTF allows; export it with "
+               "data:application/octet-stream;base64, or "
                "data:application/gltf-buffer;base64,");
 }
 

@@ -312,7 +312,7 @@ TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted)
   const MeshFrame grouped = shading_of(three + "s 2\nf 1 2 3\ns\nf 1 2 3\n");
   EXPECT_EQ(grouped.group_of_face, (Corners{1, 0}));
   EXPECT_EQ(grouped.notes,
-            (std::vector<std::string>{"1 line has an s without a smoothing group, and is read as s off"}));
+            (std::vector<std::string>{"1 line begins with s but names no smoothing group, and is read as 's off'"}));
 }
 
 TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {

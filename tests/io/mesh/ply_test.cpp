@@ -115,7 +115,7 @@ TEST(ReadPly, velocity_that_is_not_whole_or_no_number_is_an_error_where_it_is_as
   EXPECT_EQ(said(half),
             "walk.ply, header: the velocity of the vertices is incomplete, since they have no property vz; add it, or "
             "leave all velocities out");
-  EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list, but must be a number");
+  EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list, but must be a number; export the file again");
   EXPECT_EQ(said(broken).find("walk.ply, line 15, vertex 0: "), 0U) << said(broken);
   EXPECT_EQ(error_of(half), "no error");
   EXPECT_EQ(error_of(broken), "no error");
@@ -190,12 +190,14 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
             "walk.ply, line 2: version '1.1' of PLY cannot be read; export the file as version 1.0");
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
   EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with 'format'"));
-  EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
+  EXPECT_EQ(with("element vertex 4", "element vertex 4 5"),
+            "walk.ply, line 3: this line must have the form: element NAME COUNT");
   EXPECT_EQ(with("float y", "float16 y"),
             "walk.ply, line 5: the type 'float16' is not a type of PLY; export the file again");
   EXPECT_EQ(with("element face", "elements face"),
             "walk.ply, line 7: 'elements' is not a keyword of a PLY header; export the file again");
-  EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: the line must be: property TYPE NAME"));
+  EXPECT_TRUE(
+      with("float z", "float z 1").starts_with("walk.ply, line 6: this line must have the form: property TYPE NAME"));
   EXPECT_TRUE(
       with("element vertex 4\n", "")
           .starts_with(
@@ -218,7 +220,7 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   EXPECT_EQ(with("vertex_indices", "vertex_indices\nproperty list uchar int vertex_index"),
             "walk.ply, line 9: the faces have both vertex_indices and vertex_index; remove one of the two properties");
   EXPECT_EQ(with("float z", "list char float z"),
-            "walk.ply, line 6: the coordinate 'z' is a list, but must be a number");
+            "walk.ply, line 6: the coordinate 'z' is a list, but must be a number; export the file again");
   EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z; export the file again");
   EXPECT_EQ(with("element vertex", "element point"), "walk.ply, line 9: the file has no vertices; export a mesh");
   EXPECT_EQ(with("vertex 4", "vertex 0"), "walk.ply, line 9: the file has no vertices; export a mesh");

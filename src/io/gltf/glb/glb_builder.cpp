@@ -99,7 +99,7 @@ Result<std::size_t> GlbBuilder::finish(const Take& take) {
   const GlbFrame& frame = framed.value();
   if (frame.size > most_bytes_)
     return invalid_input("", "the result would have " + counted(frame.size, "byte", "bytes") +
-                                 ", but may have at most " + grouped(most_bytes_));
+                                 ", but may have at most " + grouped(most_bytes_) + "; use fewer keyframes or targets");
   const auto size = static_cast<std::size_t>(frame.size);
   for (const std::string_view piece : {std::string_view(frame.before_json), std::string_view(text),
                                        std::string_view(frame.behind_json), std::string_view(indices_)}) {

@@ -167,7 +167,8 @@ void Parser::parse_buffer(const JsonView& item) {
   Buffer buffer;
   if (item.has("uri")) buffer.uri = item.text("uri");
   buffer.byte_length = item.required_count("byteLength", kMostBytes);
-  if (buffer.byte_length == 0) item.complain("byteLength", "byteLength of a buffer must be at least 1");
+  if (buffer.byte_length == 0)
+    item.complain("byteLength", "byteLength of a buffer must be at least 1; export the file again");
   model_.buffers.push_back(std::move(buffer));
 }
 
@@ -177,9 +178,10 @@ void Parser::parse_view(const JsonView& item, BufferView& view) {
   view.length = item.required_count("byteLength", kMostBytes);
   view.stride = item.find_count("byteStride", 252);
   if (view.stride && (*view.stride < 4 || *view.stride % 4 != 0))
-    item.complain("byteStride", "byteStride must be a multiple of 4 from 4 to 252");
+    item.complain("byteStride", "byteStride must be a multiple of 4 from 4 to 252; export the file again");
   if (complaint_.first()) return;
-  if (view.length == 0) return item.complain("byteLength", "byteLength of a buffer view must be at least 1");
+  if (view.length == 0)
+    return item.complain("byteLength", "byteLength of a buffer view must be at least 1; export the file again");
   const std::size_t available = model_.buffers[view.buffer].byte_length;
   if (view.offset > available || view.length > available - view.offset)
     return item.complain("the buffer view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
@@ -215,9 +217,10 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const auto* const found_mode = std::find_if(kModes.begin(), kModes.end(), [&](auto& m) { return m.first == mode; });
   const auto* const found_filter =
       std::find_if(kFilters.begin(), kFilters.end(), [&](auto& f) { return f.first == filter; });
-  if (found_mode == kModes.end()) item.complain("mode", "mode must be ATTRIBUTES, TRIANGLES or INDICES");
+  if (found_mode == kModes.end())
+    item.complain("mode", "mode must be ATTRIBUTES, TRIANGLES or INDICES; compress the file again");
   if (found_filter == kFilters.end())
-    item.complain("filter", "filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
+    item.complain("filter", "filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL; compress the file again");
   if (complaint_.first()) return std::nullopt;
   result.mode = found_mode->second;
   result.filter = found_filter->second;
@@ -231,17 +234,20 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const bool stride_ok =
       of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
   if (view.stride && *view.stride != result.stride)
-    item.complain("byteStride", "byteStride must be " + std::to_string(*view.stride) + ", as in the buffer view");
+    item.complain("byteStride", "byteStride must be " + std::to_string(*view.stride) +
+                                    ", as in the buffer view; compress the file again");
   if (!stride_ok)
-    item.complain("byteStride", of_attributes ? "byteStride of attributes must be a multiple of 4 from 4 to 256"
-                                              : "byteStride of indices must be 2 or 4");
+    item.complain("byteStride",
+                  of_attributes
+                      ? "byteStride of attributes must be a multiple of 4 from 4 to 256; compress the file again"
+                      : "byteStride of indices must be 2 or 4; compress the file again");
   const bool filter_ok = result.filter == Filter::kNone ||
                          (of_attributes && (result.filter == Filter::kExponential || result.stride == 8 ||
                                             (result.filter == Filter::kOctahedral && result.stride == 4)));
   if (!filter_ok)
     item.complain("filter", "the filter is not allowed with this mode and byteStride; compress the file again");
   if (result.mode == Mode::kTriangles && result.count % 3 != 0)
-    item.complain("count", "count must be a multiple of 3 for triangles");
+    item.complain("count", "count must be a multiple of 3 for triangles; compress the file again");
   if (complaint_.first()) return std::nullopt;
   if (result.count > view.length / result.stride || result.count * result.stride != view.length)
     item.complain("count", counted(result.count, "element", "elements") + " of " +
@@ -266,16 +272,16 @@ void Parser::parse_accessor(const JsonView& item, Accessor& accessor) {
   const auto* const found =
       std::find_if(kElementTypes.begin(), kElementTypes.end(), [&](const auto& t) { return t.name == type; });
   if (found == kElementTypes.end()) {
-    item.complain("type", "type must be SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
+    item.complain("type", "type must be SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4; export the file again");
   } else {
     accessor.components = found->components;
     accessor.is_matrix = found->is_matrix;
   }
-  if (accessor.count == 0) item.complain("count", "count of an accessor must be at least 1");
+  if (accessor.count == 0) item.complain("count", "count of an accessor must be at least 1; export the file again");
   if (item.has("byteOffset") && !item.has("bufferView"))
-    item.complain("byteOffset", "byteOffset is not allowed without bufferView");
+    item.complain("byteOffset", "byteOffset is not allowed without bufferView; export the file again");
   if (accessor.normalized && (accessor.component == Component::kFloat || accessor.component == Component::kUint32))
-    item.complain("normalized", "normalized is only allowed for integers of 8 and 16 bits");
+    item.complain("normalized", "normalized is only allowed for integers of 8 and 16 bits; export the file again");
   if (const std::optional<JsonView> sparse = item.object("sparse")) parse_sparse(*sparse, accessor);
 }
 
@@ -284,15 +290,17 @@ void Parser::parse_sparse(const JsonView& item, Accessor& accessor) {
   sparse.count = item.required_count("count", kMostBytes);
   if (sparse.count == 0 || sparse.count > accessor.count)
     item.complain("count", "count is " + std::to_string(sparse.count) + ", but must be from 1 to " +
-                               std::to_string(accessor.count) + ", the number of elements of the accessor");
+                               std::to_string(accessor.count) +
+                               ", the number of elements of the accessor; export the file again");
   const std::optional<JsonView> indices = item.object("indices"), values = item.object("values");
-  if (!indices || !values) return item.complain("a sparse accessor must have indices and values");
+  if (!indices || !values)
+    return item.complain("a sparse accessor must have indices and values; export the file again");
   sparse.indices_view = indices->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
   sparse.indices_offset = indices->count("byteOffset", kMostBytes, 0);
   sparse.indices_component = read_component(*indices).value_or(Component::kUint16);
   if (sparse.indices_component != Component::kUint8 && sparse.indices_component != Component::kUint16 &&
       sparse.indices_component != Component::kUint32)
-    indices->complain("componentType", "componentType of indices must be an unsigned integer");
+    indices->complain("componentType", "componentType of indices must be an unsigned integer; export the file again");
   sparse.values_view = values->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
   sparse.values_offset = values->count("byteOffset", kMostBytes, 0);
   accessor.sparse = sparse;
@@ -334,7 +342,7 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
     if (!array) return false;
     if (array->size() != count) {
       array->complain("the array must have " + counted(count, "number", "numbers") + ", but has " +
-                      std::to_string(array->size()));
+                      std::to_string(array->size()) + "; export the file again");
       return false;
     }
     for (std::size_t i = 0; i < count; ++i) result[i] = array->item(i).as_number();
@@ -370,7 +378,7 @@ void Parser::check_nodes(const JsonView& root) {
   const std::size_t count = model_.nodes.size();
   // Nodes that are objects were moved out of the array before. Any item that is left is therefore not an object.
   if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
-    return root.complain("nodes", "nodes must be an array of at least one object");
+    return root.complain("nodes", "nodes must be an array of at least one object; export the file again");
   for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
     const GltfNode& node = model_.nodes[i];
     if (!node.mesh && node.weights.empty()) continue;

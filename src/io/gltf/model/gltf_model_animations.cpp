@@ -262,7 +262,7 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
   else if (interpolation == "CUBICSPLINE")
     track.interpolation = GltfInterpolation::kCubicSpline;
   else if (!interpolation.empty() && interpolation != "LINEAR")
-    sampler.complain("interpolation", "interpolation must be LINEAR, STEP or CUBICSPLINE");
+    sampler.complain("interpolation", "interpolation must be LINEAR, STEP or CUBICSPLINE; export the file again");
   for (const char* key : {"input", "output"}) {
     if (!sampler.has(key))
       sampler.complain(std::string("the sampler has no ").append(key).append("; export the file again"));

@@ -264,9 +264,11 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
     components = 4;
   if (use == Use::kIndices || use == Use::kTimes || use == Use::kWeights) components = 1;
   if (use == Use::kInverseBinds) {
-    if (!accessor.is_matrix || accessor.components != 16) return complain("must be of type MAT4");
+    if (!accessor.is_matrix || accessor.components != 16)
+      return complain("must be of type MAT4; export the file again");
   } else if (accessor.is_matrix || accessor.components != components) {
-    return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)));
+    return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)) +
+                    "; export the file again");
   }
 
   // The rules for the types of attributes are in section 3.7.2.1 of the specification, and in KHR_mesh_quantization.
@@ -312,7 +314,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
   if (!accessor.view && !moved && accessor.count > file_bytes_ + kPlausible)
     return complain("has " + counted(accessor.count, "element", "elements") +
                     " but no data (bufferView), which is more than a file of " + counted(file_bytes_, "byte", "bytes") +
-                    " may declare");
+                    " may declare; export the file again");
   if (accessor.sparse) check_sparse(object, key, index);
 }
 
@@ -331,9 +333,10 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
   const std::size_t alignment = component_size(accessor.component);
   if (accessor.offset % alignment != 0 || (view.offset + accessor.offset) % alignment != 0)
     return complain("must begin at a multiple of " + counted(alignment, "byte", "bytes") +
-                    ", the size of its components");
+                    ", the size of its components; export the file again");
   if (is_attribute && (accessor.offset % 4 != 0 || stride % 4 != 0))
-    return complain("must have its elements at multiples of 4 bytes, since it is an attribute of vertices");
+    return complain(
+        "must have its elements at multiples of 4 bytes, since it is an attribute of vertices; export the file again");
   if (stride < size)
     return complain("has elements of " + counted(size, "byte", "bytes") + ", more than the byteStride of " +
                     number(stride) + "; export the file again");
@@ -354,7 +357,8 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
     const std::size_t alignment = component_size(component);
     if ((view.offset + offset) % alignment != 0)
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
-                               " must begin at a multiple of " + counted(alignment, "byte", "bytes"));
+                               " must begin at a multiple of " + counted(alignment, "byte", "bytes") +
+                               "; export the file again");
     if (offset > view.length || !binary::fits(sparse.count, size, view.length - offset))
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
                                " end beyond buffer view " + number(view_index) + ", which has " +
@@ -373,7 +377,8 @@ const BufferView& Parser::view_of(std::size_t index) {
 
 void Parser::check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what) {
   if (view.stride)
-    object.complain(key, std::string("the buffer view of ").append(what) + " must not have a byteStride");
+    object.complain(
+        key, std::string("the buffer view of ").append(what) + " must not have a byteStride; export the file again");
 }
 
 namespace {

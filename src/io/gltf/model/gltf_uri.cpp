@@ -129,7 +129,8 @@ Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, con
     return std::move(*bytes);
   }
   return invalid_input(place,
-                       "the data URI of a buffer must begin with data:application/octet-stream;base64, or "
+                       "the data URI of a buffer has another type than glTF allows; export it with "
+                       "data:application/octet-stream;base64, or "
                        "data:application/gltf-buffer;base64,");
 }
 
@@ -168,7 +169,7 @@ Result<std::string> name_file_uri(std::string_view uri, const std::optional<std:
   if (!relative) return relative.error();
   const fs::path path = relative.value().lexically_normal();
   if (path.has_root_path() || *path.begin() == "..")
-    return invalid_input(place, "the uri leads out of the folder of the glTF file");
+    return invalid_input(place, "the uri leads out of the folder of the glTF file; give a name inside that folder");
   return utf8_of(path_of(folder.value_or("")) / path);
 }
 
