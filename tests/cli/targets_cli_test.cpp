@@ -107,7 +107,7 @@ TEST_F(TargetsCli, errors_in_targets_have_the_exit_code_and_the_file) {
   expect_error("compare --base base.obj targets bad.target", 3, {"bad.target, line 2", "two deltas"});
   expect_error("compare --base base.obj none.target", 1, {"none.target"});
   expect_error("compare --base none.obj targets", 1, {"none.obj"});
-  expect_error("compare --base base.obj base.obj", 3, {"base.obj", "only the base itself"});
+  expect_error("compare --base base.obj base.obj", 3, {"base.obj", "there is no target beside the base"});
   folder_.write("three.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   expect_error("convert --base base.obj three.obj -o out_%d.obj", 3, {"three.obj", "3 vertices", "the base has 4"});
 }
