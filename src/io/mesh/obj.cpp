@@ -91,9 +91,9 @@ class ObjReader {
   }
   [[nodiscard]] std::string open_corner() const { return corner_name(faces_.face_count(), faces_.open_corners()); }
   [[nodiscard]] std::size_t vertex_count() const { return positions_.size() / 3; }
-  [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
+  [[nodiscard]] std::string unknown_vertex(std::int64_t index, const char* when = "") const {
     return " refers to vertex " + std::to_string(index) + ", but the file has " +
-           counted(vertex_count(), "vertex", "vertices") + "; export the file again";
+           counted(vertex_count(), "vertex", "vertices") + when + "; export the file again";
   }
 
   const std::string& name_;
@@ -301,7 +301,7 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   if (index == 0)
     return error(open_corner() + ": " + scan::quoted(word) +
                  " is not allowed, since vertices are counted from 1; export the file again");
-  if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
+  if (index < -count) return error(open_corner() + unknown_vertex(index, " so far"));
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;
   // An index that does not fit into 32 bits is larger than the number of vertices. The check of largest_ at the end of

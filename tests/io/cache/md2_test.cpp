@@ -67,7 +67,8 @@ TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(
       error_with(16, "\x35"),
       "imp.md2, byte 16: the size of a frame in the header is 53, but 3 vertices take 52 bytes; export the file again");
-  EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the number of vertices is 0, but must be at least 1");
+  EXPECT_EQ(error_with(24, "\0"s),
+            "imp.md2, byte 24: the number of vertices is 0, but must be at least 1; export a mesh with vertices");
   EXPECT_EQ(error_with(32, "\0"s),
             "imp.md2, byte 32: the number of triangles is 0, but must be at least 1; export at least one triangle");
   EXPECT_EQ(error_with(40, "\1"),

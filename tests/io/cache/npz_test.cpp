@@ -162,7 +162,8 @@ TEST(ReadNpz, errors_name_array_and_element) {
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(3,)"), std::string(12, '\0')))),
             "walk.npz, times: times must be an array of 2 numbers, one for each keyframe, but are (3,) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(2,)"), std::string(8, '\0')))),
-            "walk.npz, sample 1: the time of this sample, 0 s, is not later than 0 s, the time of sample 0");
+            "walk.npz, sample 1: the time of this sample, 0 s, is not later than 0 s, the time of sample 0; give each "
+            "sample a later time than the one before");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f8", "(2,)"), raw<double>({0, 1.0 / 0.0})))),
             "walk.npz, times[1]: the time is NaN or infinite; times must be finite numbers");
 }

@@ -44,9 +44,11 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
   EXPECT_EQ(error_of(3, cache_at({0})),
             "walk.pc2: a motion needs at least two samples, but the cache has 1; export more frames");
   EXPECT_EQ(error_of(3, cache_at({0, 1, 1})),
-            "walk.pc2, sample 2: the time of this sample, 1 s, is not later than 1 s, the time of sample 1");
+            "walk.pc2, sample 2: the time of this sample, 1 s, is not later than 1 s, the time of sample 1; give each "
+            "sample a later time than the one before");
   EXPECT_EQ(error_of(3, cache_at({0, -0.5})),
-            "walk.pc2, sample 1: the time of this sample, -0.5 s, is not later than 0 s, the time of sample 0");
+            "walk.pc2, sample 1: the time of this sample, -0.5 s, is not later than 0 s, the time of sample 0; give "
+            "each sample a later time than the one before");
 }
 
 TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {

@@ -209,7 +209,8 @@ TEST(GltfEditFiles, an_image_that_a_change_took_away_is_not_taken_along) {
   ASSERT_TRUE(document.ok()) << document.error().text();
   GltfEdit edit(document.value());
   edit.set("/images", "[]");
-  EXPECT_EQ(bytes_or_error(edit, folder / "out.glb"), "in.gltf, /images/0: the array has 0 items, and no item 0");
+  EXPECT_EQ(bytes_or_error(edit, folder / "out.glb"),
+            "in.gltf, /images/0: the array has 0 items, and no item 0; point to an item that exists");
 }
 
 TEST(GltfEditFiles, path_that_names_no_gltf_file_is_refused) {

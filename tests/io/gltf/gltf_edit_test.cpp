@@ -291,7 +291,7 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
   };
   EXPECT_EQ(error_of("/meshes/0/name/x", "1", false),
             "only an object or an array can have a member 'x', and this value is neither; correct the pointer");
-  EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 item, and no item 1");
+  EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 item, and no item 1; point to an item that exists");
   EXPECT_EQ(error_of("/meshes/0/name", "1", true),
             "a value can only be added to an array, but the pointer leads to another value; point to an array");
   EXPECT_EQ(error_of("meshes", "1", false), "this is not a JSON pointer; write one like /meshes/0/extras");

@@ -160,7 +160,8 @@ TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
       error_of(three + "f 1 2 3\nf 1 4 2\nf 1 2 3\n"),
       "walk.obj, line 5: corner 1 of face 1 refers to vertex 4, but the file has 3 vertices; export the file again");
   EXPECT_EQ(error_of(three + "f 1 2 -4\nv 0 0 0"),
-            "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far");
+            "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far; export the "
+            "file again");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
             "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1; export the "
             "file again");

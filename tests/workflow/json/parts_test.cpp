@@ -262,12 +262,14 @@ TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merged({audits[0], audits[1]}), "segment 5 is missing; give the files of all shards");
   CompareOptions other;
   other.samples = 5;
-  EXPECT_EQ(merged({three[0], compare_parts(motion, other, 3)[1]}),
-            "part_0: this shard does not belong to part_1, since they differ in the options");
+  EXPECT_EQ(
+      merged({three[0], compare_parts(motion, other, 3)[1]}),
+      "part_0: this shard does not belong to part_1, since they differ in the options; merge only shards of one run");
   AuditOptions stepping;
   stepping.rule = AuditRule::kStep;
-  EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}),
-            "part_0: this shard does not belong to part_1, since they differ in the options");
+  EXPECT_EQ(
+      merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}),
+      "part_0: this shard does not belong to part_1, since they differ in the options; merge only shards of one run");
   EXPECT_EQ(merged({three[0], audits[1]}), "the files are shards of both compare and audit; merge them separately");
 }
 
@@ -277,11 +279,13 @@ TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
   for (Motion::Keyframe& keyframe : later.keyframes) keyframe.time += 1;
   const std::vector<Part> two = compare_parts(motion, {}, 2), audits = audit_parts(motion, {}, {}, 2);
   const std::string differ = "part_0: this shard does not belong to part_1, since they differ in ";
-  EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}), differ + "the times of the keyframes");
-  EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}), differ + "the times of the keyframes");
+  EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}),
+            differ + "the times of the keyframes; merge only shards of one run");
+  EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}),
+            differ + "the times of the keyframes; merge only shards of one run");
   for (const auto& [first, second] : {std::pair(two[0], two[1]), std::pair(audits[0], audits[1])}) {
     const Part other{second.name, edited(second.text, "\"walk\"", "\"run\"")};
-    EXPECT_EQ(merged({first, other}), differ + "the name of the input");
+    EXPECT_EQ(merged({first, other}), differ + "the name of the input; merge only shards of one run");
   }
 }
 
@@ -385,8 +389,9 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merged_arrays({first, second}), "row 3 is missing; give the files of all shards");
   EXPECT_EQ(merged_arrays({first, second, second, third}), "row 1 is in two of the files; give each file once");
   for (const std::string& foreign : {other, later})
-    EXPECT_EQ(merged_arrays({first, foreign, third}),
-              "this shard does not belong to " + first + ", since they differ in the options");
+    EXPECT_EQ(
+        merged_arrays({first, foreign, third}),
+        "this shard does not belong to " + first + ", since they differ in the options; merge only shards of one run");
   EXPECT_EQ(merged_arrays({first, folder / "all.npy"}),
             "this file was not written by sample --shard, since it is (5, 80, 3) of '<f4'; give only shards");
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
@@ -546,7 +551,9 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       const std::string text = merged.error().text();
       EXPECT_TRUE(text.starts_with(paths[later] + ": this shard does not belong to " + folder.path()))
           << task.name << text;
-      EXPECT_TRUE(text.ends_with(", since they differ in keyframe " + std::to_string(changed))) << task.name << text;
+      EXPECT_TRUE(text.ends_with(", since they differ in keyframe " + std::to_string(changed) +
+                                 "; merge only shards of one run"))
+          << task.name << text;
     }
   }
 }
