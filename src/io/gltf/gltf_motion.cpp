@@ -160,7 +160,7 @@ class Assembly {
       return invalid_input(document_.name(), counted(keyframes, "keyframe", "keyframes") + " of " +
                                                  counted(vertex_count_, "vertex", "vertices") +
                                                  " would need more than " + counted(most_bytes, "byte", "bytes") +
-                                                 " of memory; split the mesh, or remove targets");
+                                                 " of memory; split the mesh, or use fewer targets or keys");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
       return invalid_input(document_.name(), "the mesh has more than the " +
