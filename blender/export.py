@@ -146,12 +146,12 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "If no viewer is chosen, normals are made right in the first four, and no worse in the others if possible")
+        _hint(column, "If no viewer is chosen, normals are made right in the first four, and, where possible, no worse in the others")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")
     column.prop(preferences, "most_kilobytes")
-    _hint(column, "0: no limit")
+    _hint(column, "0 means no limit")
 
 
 def _hint(layout: bpy.types.UILayout, text: str) -> None:

@@ -333,7 +333,7 @@ class CHRONORMAL_OT_look(_Looking, bpy.types.Operator):
 
 
 class CHRONORMAL_OT_jump(_Looking, bpy.types.Operator):
-    """Go there: set the sliders or the frame, colour the mesh, and turn the view to the place"""
+    """Go to this pose or place: set the sliders or the frame, colour the mesh, and turn the view to the place"""
 
     bl_idname = "chronormal.jump"
     bl_label = "Go there"
@@ -377,7 +377,7 @@ def _show_vertex(context: bpy.types.Context, o: bpy.types.Object, index: int) ->
 
 
 class CHRONORMAL_OT_clear(bpy.types.Operator):
-    """Take the colours and the list away"""
+    """Remove the colours and the list"""
 
     bl_idname = "chronormal.clear"
     bl_label = "Clear"

@@ -62,7 +62,7 @@ def make_executable(path: Path) -> None:
     try:
         path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
     except OSError as error:
-        raise Unavailable(f"{path} may not be run ({error.strerror}). Allow that in its file properties.") from error
+        raise Unavailable(f"{path} may not be run ({error.strerror}). Allow the file to be executed, in its properties.") from error
 
 
 def find(preferred: str) -> Path:
@@ -72,7 +72,7 @@ def find(preferred: str) -> Path:
         path = Path(preferred)
         if not path.is_file():
             raise Unavailable(f"The preferences name the program {preferred}, which is not there. Correct the path in Edit > "
-                              "Preferences > Add-ons, or empty it to use the program that ships with the add-on.")
+                              "Preferences > Add-ons, or leave the path empty to use the program that ships with the add-on.")
         make_executable(path)
         return path
     path = shipped()
@@ -83,7 +83,7 @@ def find(preferred: str) -> Path:
     if on_path is not None:
         return Path(on_path)
     raise Unavailable(f"The program chronormal was not found: this copy of the add-on has none for {platform.system()} on "
-                      f"{platform.machine()}. Name one in Edit > Preferences > Add-ons > Right normals for shape keys.")
+                      f"{platform.machine()}. Name a program in Edit > Preferences > Add-ons > Right normals for shape keys.")
 
 
 # The labels in the panel for the options that messages of the program may mention.
@@ -110,7 +110,8 @@ def bake(path: Path, source: Path, result: Path, options: list[str]) -> Outcome:
     try:
         run = subprocess.run(command, capture_output=True, check=False, creationflags=without_console)
     except OSError as error:
-        raise Unavailable(f"{path} could not be started: {error.strerror}.") from error
+        raise Unavailable(f"{path} could not be started: {error.strerror}. Check the path of the program in the "
+                          "preferences.") from error
     outcome = Outcome(run.returncode, said=sentences(run.stderr.decode("utf-8", "replace")))
     if outcome.wrote:
         try:

@@ -22,7 +22,7 @@ class Preferences(bpy.types.AddonPreferences):
 
     program: bpy.props.StringProperty(
         name="Program",
-        description="The chronormal program to run. Leave it empty to use the one that ships with the add-on",
+        description="The chronormal program to run. Leave the path empty to use the program that ships with the add-on",
         subtype="FILE_PATH",
     )
     use: bpy.props.BoolProperty(
@@ -32,8 +32,8 @@ class Preferences(bpy.types.AddonPreferences):
     )
     viewers: bpy.props.EnumProperty(
         name="Viewers",
-        description="The viewers that the file is made for. If none is chosen, it is made for three.js, Babylon.js, PlayCanvas "
-                    "and Bevy. Where possible, it gets no worse in the others",
+        description="The viewers that the file is made for. If no viewer is chosen, the file is made for three.js, Babylon.js, "
+                    "PlayCanvas and Bevy. Where possible, it gets no worse in the other viewers",
         items=[(name, title, what, 1 << n) for n, (name, title, what) in enumerate(VIEWERS)],
         options={"ENUM_FLAG"},
         default=set(),

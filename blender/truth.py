@@ -51,9 +51,9 @@ class Subject:
 
     def __init__(self, o: bpy.types.Object) -> None:
         if not exported_keys(o.data):
-            raise Refused("This object has no shape keys that would be exported. Add one, or unmute one.")
+            raise Refused("This object has no shape keys that would be exported. Add a shape key, or unmute one.")
         if not o.data.shape_keys.use_relative:
-            raise Refused("Absolute shape keys are not exported to glTF. Make them relative.")
+            raise Refused("Absolute shape keys are not exported to glTF. Make the shape keys relative.")
         self.original = o
 
     def __enter__(self) -> "Subject":

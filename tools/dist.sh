@@ -8,17 +8,17 @@ dist() {
   local step begin
   for step; do
     [[ " ${dist_steps[*]} " == *" $step "* ]] && continue
-    say "there is no step $step; the steps are" "${dist_steps[@]}"
+    say "there is no step '$step'; choose one of" "${dist_steps[@]}"
     return 2
   done
   dist=$root/dist version=$(sed -n 's/^project(chronormal VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
   if ! SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct); then
-    say "this folder is no clone of the repository, but a release is made from a commit; clone the repository first"
+    say "this folder is not a clone of the repository, but a release is made from a commit; clone the repository first"
     return 1
   fi
   # SOURCE_DATE_EPOCH is the time of all files in archives, so that an archive has the same bytes when it is made again.
   export SOURCE_DATE_EPOCH
-  [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit; the archive has the files of the commit"
+  [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit, and the archive will have the files of the commit; commit changes that belong into the release"
   mkdir -p "$dist"
   [ $# -gt 0 ] || { rm -f "$dist"/*; set -- "${dist_steps[@]}"; }
   for step in "${dist_steps[@]}"; do

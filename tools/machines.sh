@@ -4,7 +4,7 @@
 # compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares their
 # results with the results of the library of build/release.
 compile_two_files() {
-  say "the two files by $1"
+  say "compiling the two files of tools/two_files.py: $1"
   cmake -DSOURCE="$root" -DFOLDER="$root/build/release/two_files" "-DCOMPILER=$2" "-DFLAGS=$3" "-DRUN=$4" \
     -P tests/install/two_files/run.cmake
 }

@@ -117,7 +117,7 @@ report_results() {
   say "these tests were skipped, with the number and the reason:"
   printf '%s\n' "$reasons" >&2
   wrong=$(grep -E "$(wrong_reasons)" <<<"$reasons" || true)
-  [ -z "$wrong" ] || { say "tests were skipped for reasons that are not true on this machine: $wrong"; return 1; }
+  [ -z "$wrong" ] || { say "tests were skipped for reasons that are not true on this machine; make these tests run: $wrong"; return 1; }
 }
 
 # wrong_reasons: prints a pattern of reasons that do not hold on this machine. No test may be skipped for such a reason.

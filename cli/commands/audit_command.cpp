@@ -45,10 +45,12 @@ struct AuditArguments {
 // The message for the case that the user sets a limit (--tolerance or --tears) but nothing in the input moves. Such an
 // input must not pass, because an export may have lost its animations.
 constexpr const char* kNothingMoves =
-    "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
+    "nothing could be judged, since no morph target and no animation moves stored normals; export the model again, "
+    "with normals, morph targets and animations";
 
 constexpr const char* kDividesSequences =
-    "only the work on a sequence of keyframes can be divided, and this input is a glTF file; leave this option out";
+    "only the work on a sequence of keyframes can be divided, and this input is a glTF file; run the command once, "
+    "without --shard and mpirun";
 
 // Quotes a word so that a shell reads the same word back.
 std::string shell_word(const std::string& word) {
@@ -80,15 +82,16 @@ std::string words_of(const InputOptions& input) {
 }
 
 const std::vector<RefusedOption> kRefusedByAudit = {
-    {"--world", "errors do not depend on where nodes put a mesh, so audit judges each mesh in its own space"}};
+    {"--world",
+     "errors do not depend on where nodes put a mesh, so audit judges each mesh in its own space; leave --world out"}};
 
 std::vector<std::vector<Option>> tables(AuditArguments& options) {
   return {
       input_table(options.input, kRefusedByAudit),
       {{"--rule NAME",
         &options.rule,
-        "judge normals that are interpolated between keyframes by this rule\nOne of gltf (default for glTF), lerp, "
-        "nlerp (default for all other inputs), slerp, step and flat",
+        "judge normals as this rule interpolates them between keyframes\nNAME is gltf (default for glTF files), lerp, "
+        "nlerp (default for all other inputs), slerp, step or flat",
         {.rare = true}}},
       options.judge.table("judge the normals that these viewers render"),
       {{"--tolerance DEG", &options.limits.degrees,
@@ -97,24 +100,26 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
        {"--tears N",
         &options.limits.torn_edges,
         "exit with code 4 if more than N edges are torn at one moment\nAn edge of a glTF file is torn if errors jump "
-        "by more than 10 degrees across it, which looks like a fold that the surface does not have",
+        "by more than 10 degrees across it, which looks like a fold that the surface does not have. Without this "
+        "option there is no limit",
         {.check = check_whole(0)}},
        {"--poses FILE|random", &options.poses,
-        "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
-        "judges random poses"},
+        "also judge these poses of a glTF file\nFILE lists poses as JSON, such as [{\"jawOpen\": 0.7}, ...], with "
+        "weights of morph targets by name. The word random stands for random poses"},
        {"--weights LO:HI",
         &options.weights,
-        "judge each target alone from weight LO to HI\nThe default is 0:1",
+        "judge each morph target alone from weight LO to weight HI\nThe default is 0:1",
         {.rare = true}},
        {"--errors FILE", &options.errors,
-        "write the error of every vertex at every sample, in degrees\nA FILE in .npz, for programs, has all errors. A "
-        "FILE in .ply, for MeshLab and Blender, has the largest error of each vertex, as the property quality"},
+        "write the error of every vertex at every moment, in degrees\nA file whose name ends in .npz, for programs, "
+        "has all errors. A file whose name ends in .ply, for MeshLab and Blender, has the largest error of each "
+        "vertex, as the property quality"},
        {"--no-weld",
         &options.no_weld,
         "do not merge vertices that are at the same point at all times",
         {.rare = true}}},
-      options.run.options("judge only share I of N equal shares of a sequence\nOUT is a shard, and chronormal "
-                          "merge puts all shards together"),
+      options.run.options("judge only share I of N equal shares of a sequence\nI is a number from 1 to N. OUT becomes "
+                          "a shard, and chronormal merge puts the shards of all N runs together"),
       {{"--json", &options.json, "print the result as JSON, for programs"}},
       options.common.table(false)};
 }
@@ -150,16 +155,18 @@ Result<std::optional<Audited>> audit_input(const AuditArguments& options, const 
   const GltfDocument* const document = input.document();
   if (const Status known = check_viewers(how.viewers, input); !known) return known.error();
   if (document == nullptr && options.poses)
-    return misuse("--poses", "poses can only be judged in glTF files, and this input is not one; leave --poses out");
+    return misuse("--poses",
+                  "poses can only be judged in a glTF file, and this input has another format; leave --poses out");
   if (document == nullptr && options.weights)
     return misuse("--weights",
-                  "weights can only be chosen for glTF files, and this input is not one; leave --weights out");
+                  "weights can only be chosen for a glTF file, and this input has another format; leave --weights out");
   if (document == nullptr && options.limits.torn_edges)
-    return misuse("--tears",
-                  "torn edges can only be counted in glTF files, and this input is not one; leave --tears out");
+    return misuse(
+        "--tears",
+        "torn edges can only be counted in a glTF file, and this input has another format; leave --tears out");
   if (document != nullptr && options.run.resume)
     return misuse("--resume",
-                  "--resume is only for sequences of keyframes, and the input is not one; leave --resume out");
+                  "--resume is only for sequences of keyframes, and this input is of another kind; leave --resume out");
   if (const Status status = document != nullptr ? refuse_shares(options.run, kDividesSequences) : Success{}; !status)
     return status.error();
   std::optional<Audit> found;
@@ -189,7 +196,9 @@ Result<std::array<double, 2>> read_weights(const std::string& text) {
   const std::string_view words = text;
   if (colon == std::string::npos || !is_number(words.substr(0, colon), range[0]) ||
       !is_number(words.substr(colon + 1), range[1]) || !(range[0] < range[1]) || !std::isfinite(range[1] - range[0]))
-    return misuse("--weights", formatted("'{}' must be two weights, the smaller one first, such as -1:1", text));
+    return misuse(
+        "--weights",
+        formatted("'{}' is not a range of weights; write LO:HI, the smaller weight first, such as -1:1", text));
   return range;
 }
 
@@ -202,7 +211,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   if (const Status named = options.judge.read("audit", how.weighting, how.viewers); !named) return named.error();
   if (!how.viewers.empty() && how.rule && *how.rule != AuditRule::kGltf)
-    return misuse("--for", "viewers can only be chosen with the rule gltf; leave --rule out");
+    return misuse("--for", "viewers can only be chosen with the rule gltf; leave --rule or --for out");
   if (options.weights) {
     const Result<std::array<double, 2>> weights = read_weights(*options.weights);
     if (!weights) return weights.error();
@@ -215,7 +224,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     how.poses = std::move(poses).value();
   }
   if (options.limits.degrees && !(*options.limits.degrees >= 0 && std::isfinite(*options.limits.degrees)))
-    return misuse("--tolerance", "the tolerance must be an angle in degrees, at least 0");
+    return misuse("--tolerance", "the tolerance must be an angle of at least 0 degrees, such as 0.5");
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.errors) {
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
@@ -246,14 +255,14 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 // Returns the sentence for an input that does not pass because of errors at samples whose faces almost vanish. `place`
 // names the worst of these samples, and ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
-  return formatted("the worst error is {}, beyond the tolerance of {}, where faces almost vanish{}",
+  return formatted("where faces almost vanish, the worst error is {}, beyond the tolerance of {}{}",
                    with_degrees(with_digits(error.faint_worst, 4)),
                    with_degrees(formatted("{:g}", *audited.limits.degrees)), place);
 }
 
 // Returns the sentence for an input that does not pass because more edges are torn at one moment than the limit allows.
 std::string why_torn(const Audited& audited, const MotionError& error) {
-  return formatted("{} at one moment, beyond the limit of {}",
+  return formatted("{} at one moment, more than --tears allows ({})",
                    counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
@@ -353,8 +362,10 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
     return misuse("--resume",
                   "--resume is only for one sequence of keyframes, not for several glTF files; leave --resume out");
   if (!options.input.animation.empty())
-    return misuse("--animation", "--animation is only for a single glTF file; name one file");
-  if (options.errors) return misuse("--errors", "--errors is only for a single input; name one file");
+    return misuse("--animation",
+                  "--animation is only for a single glTF file; name only one file, or leave --animation out");
+  if (options.errors)
+    return misuse("--errors", "--errors is only for a single input; name only one file, or leave --errors out");
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {

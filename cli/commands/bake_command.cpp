@@ -89,7 +89,8 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   how.animations_only = options.animations_only;
   how.plan = options.plan;
   if (how.encoding.value_or(BakeEncoding::kSmallest) != BakeEncoding::kSmallest) {
-    constexpr const char* kNeedsSmallest = "this option can only be used with --encode smallest; leave --encode out";
+    constexpr const char* kNeedsSmallest =
+        "this option can only be used with --encode smallest; leave this option or --encode out";
     if (options.most_targets) return misuse("--max-targets", kNeedsSmallest);
     if (options.animations_only) return misuse("--animations-only", kNeedsSmallest);
     if (options.plan) return misuse("--plan", kNeedsSmallest);
@@ -99,7 +100,8 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     return misuse("--json", "JSON and the result cannot both go to the standard output; write the result to a file");
   if (options.drivers) {
     if (options.drivers->empty() || *options.drivers == "-")
-      return misuse("--drivers", "the drivers need a file of their own; give a name, which cannot be -");
+      return misuse("--drivers",
+                    "the drivers need a file of their own, not the standard output; name a file with --drivers FILE");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
@@ -160,7 +162,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   struct Stands {
     Stands() {
       say_at_end(
-          "chronormal: the output is complete; only the comparison of errors was stopped (--no-audit leaves it out)\n");
+          "chronormal: the output is complete; only the comparison of errors was stopped (--no-audit leaves this "
+          "comparison out)\n");
     }
     Stands(const Stands&) = delete;
     Stands& operator=(const Stands&) = delete;
@@ -216,7 +219,9 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
   if (options.crease_angle != 180 && !options.smooth)
-    return misuse("--crease", "--crease is only for primitives without normals, so it needs --smooth; add --smooth");
+    return misuse("--crease",
+                  "in a glTF file, --crease only affects primitives without normals, and only if --smooth is given; "
+                  "add --smooth");
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
     how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
   how.progress = progress.callback("baking");
@@ -295,9 +300,11 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
     if (*how.tolerance < kLeastKeyTolerance)
-      return misuse("--path", formatted("the curves are cut with an error of {}, which uses up the tolerance of {:g} "
-                                        "degrees; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
-                                        with_degrees(with_digits(pieces, 6)), asked));
+      return misuse(
+          "--path",
+          formatted("cutting the curves into straight pieces causes an error of {}, which uses up the tolerance of "
+                    "{:g} degrees; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
+                    with_degrees(with_digits(pieces, 6)), asked));
   }
   if (options.smooth)
     return misuse("--smooth", "--smooth is only for glTF files, and the input is a sequence; leave --smooth out");
@@ -314,9 +321,9 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                          "the input is a base with targets, not a sequence; write both as a .glb with chronormal "
                          "convert first, and bake that file");
   if (motion.segments.size() + 1 != motion.keyframes.size())
-    return invalid_input(
-        input.name(),
-        "the weights of this animation jump, so it cannot be baked as a sequence; bake the glTF file itself");
+    return invalid_input(input.name(),
+                         "the weights of this animation jump, so the animation cannot be baked as a sequence; bake the "
+                         "glTF file itself");
   // By default, hard edges follow the stored normals of the file.
   const StoredNormals& stored = *input.normals().value();
   if (!stored.of_keyframes.empty()) {
@@ -420,7 +427,7 @@ Result<int> run(BakeArguments options) {
 
 // Returns the options that all commands share, but makes OUT optional.
 std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
-  table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT of several)"};
+  table.front() = {"-o,--output OUT", &output, "the file to write (default: the last INPUT, if there are several)"};
   return table;
 }
 
@@ -439,60 +446,63 @@ Command bake_command() {
       "Correct the normals of a glTF file, or make a glTF file from a sequence",
       {input_table(options->input, refused),
        {{"--for VIEWER,...", &options->viewers,
-         "the viewers that the result is made for, such as three\nViewers and compressors are " + viewer_names() +
-             "; all stands for every viewer. The default is three, babylon, playcanvas and bevy; where possible, the "
-             "result is no worse in the others"},
+         "make the result for these viewers, such as three,godot\nViewers and compressors are " + viewer_names() +
+             "; the word all stands for every viewer. The default is three, babylon, playcanvas and bevy. Where "
+             "possible, the result is no worse in the other viewers"},
         {"--encode HOW", &options->encode,
-         "how the new normals are stored (default: smallest)\nsmallest: the smallest errors in a file of at most 2.5 "
-         "times "
-         "the size, or with --tolerance the fewest bytes whose errors stay within it. harmless: unit normals that "
+         "choose how the new normals are stored (default for glTF: smallest)\nFor a sequence, the default is exact, or "
+         "harmless if a viewer that --for names does not add up targets. smallest: the smallest errors in a file of at "
+         "most 2.5 times the size, or with --tolerance the fewest bytes whose errors stay within it. harmless: unit "
+         "normals that "
          "look the same in every viewer and after any compression. exact: correction targets that make normals "
          "exact in viewers that add up targets as glTF says. endpoint: the best single delta for each target, "
          "without correction targets. keys, only for sequences: the fewest keys that stay within the tolerance at "
          "every instant"},
         {"--weighting NAME",
          &options->weighting,
-         "how much each face counts in a vertex normal\nOne of area, angle, uniform, area-angle, max, "
-         "inverse-edges and inverse-roots. Corrections are exact with area, and fitted with all others. The default is "
-         "what the base normals of "
-         "each mesh follow, else area",
+         "choose how much each face counts in a vertex normal\nNAME is area, angle, uniform, area-angle, max, "
+         "inverse-edges or inverse-roots. Corrections are exact with area, and fitted with all others. The default is "
+         "the weighting that the base normals of each mesh follow, or area if they follow none",
          {.rare = true}},
         {"--crease DEG",
          &options->crease_angle,
-         "treat edges sharper than DEG degrees as hard\nFor sequences, and with --smooth. The default is 180, "
-         "for no hard edges",
+         "treat edges sharper than DEG degrees as hard\nA glTF file also needs --smooth. The default is 180, which "
+         "makes no edge hard",
          {.rare = true}},
         {"--recompute-base",
          &options->recompute_base,
          "also replace the base normals by new ones that are computed from the geometry",
          {.rare = true}},
-        {"--smooth", &options->smooth, "give smooth normals to primitives that have none"},
+        {"--smooth", &options->smooth, "give smooth normals to primitives that have no normals"},
         {"--max-bytes N",
          &options->most_bytes,
-         "spend at most N bytes on the normals of each mesh\nFor a sequence, and with another --encode than "
-         "smallest, the limit applies to all new arrays together, and the command fails if they are larger",
+         "spend at most N bytes on the normals of each mesh\nFor a sequence, and with an --encode other than smallest, "
+         "the limit applies to all new arrays together, and the command fails if they are larger. By default, only "
+         "--encode smallest has a limit",
          {.check = check_whole(0)}},
         {"--max-targets N",
          &options->most_targets,
-         "write at most N morph targets for each mesh\nCorrection targets count, too. The default is the "
-         "number that the viewers can show. Only with --encode smallest",
+         "write at most N morph targets for each mesh\nCorrection targets count, too. The default is the number that "
+         "the viewers can show. Needs --encode smallest",
          {.check = check_whole(0)}},
         {"--animations-only", &options->animations_only,
-         "correct only the animations, not single sliders\nNormals are fitted to the animations of the file. "
-         "Moving a slider by hand may then look wrong. Only with --encode smallest"},
+         "correct only the animations, not single sliders\nA slider is the weight of one morph target. Normals are "
+         "fitted to the animations of the file, and may look wrong if a slider is moved by hand. Needs --encode "
+         "smallest"},
         {"--poses FILE|random", &options->poses,
-         "correct the poses that a program sets\nFILE has poses as JSON, such as [{\"smile\": 1, \"jaw\": 0.5}, "
-         "...]; random uses random poses. Meshes that no animation drives then get correction targets, which the "
-         "program has to drive as the file says. Only with --encode smallest"},
+         "correct the poses that a program sets\nFILE lists poses as JSON, such as [{\"smile\": 1, \"jaw\": 0.5}, "
+         "...]; the word random stands for random poses. Meshes that no animation drives then get correction targets, "
+         "which the program has to drive as the extras in the result say. Needs --encode smallest"},
         {"--plan", &options->plan,
-         "list the candidates with their errors, and write nothing\nOnly with --encode smallest"},
+         "list the candidates for the result with their errors, and write no file\nNeeds --encode smallest"},
         {"--dense-zeros",
          &options->dense_zeros,
-         "write deltas that are zero in full\nFor programs that cannot read sparse accessors, such as Assimp",
+         "write deltas of zero in full, without sparse accessors\nThis is for programs that cannot read sparse "
+         "accessors, such as Assimp",
          {.rare = true}},
         {"--tolerance DEG", &options->tolerance,
-         "the largest error allowed along the animations, in degrees\nWith harmless and exact, correction targets that "
-         "turn no normal by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
+         "set the largest error allowed along the animations, in degrees\nWith harmless and exact, correction targets "
+         "that turn no normal by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
         {"--drivers FILE",
          &options->drivers,
          "also write to FILE, as JSON, how a program drives the correction targets\nThe extras in the result say the "
@@ -509,7 +519,7 @@ Command bake_command() {
         {"--json", &options->json, "print the result as JSON, for programs"}},
        with_output(options->common.table(true), options->output)},
       "Your base normals stay as they are, and so do all bytes that have nothing to do with the normals of "
-      "targets.\nOUT may be INPUT with --force.\n"
+      "targets.\nWith --force, OUT may be the same file as INPUT.\n"
       "\nExamples:\n"
       "  chronormal bake face.glb face.right.glb\n"
       "  chronormal bake avatar.vrm -o avatar.right.vrm\n"

@@ -17,7 +17,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
                   "of the two out");
   if (!input.animation.empty() && elements_given)
     return misuse("--animation",
-                  "--animation with --blend can only compare the stored normals of the file; leave --elements out");
+                  "with --animation, --blend can only compare the stored normals of the file; leave --elements out");
   return Success{};
 }
 
@@ -31,15 +31,16 @@ Error blamed(Error error, const std::string& option) {
 
 std::vector<Option> BlendArguments::table() {
   return {{"--blend N", &rows,
-           "compare deltas of blend shapes at N random poses\nDeltas of normals, which viewers add up, are compared "
-           "with exact normals. With --animation, the poses are N moments of it"},
+           "compare normals of blend shapes in N random poses\nThe normals that viewers get by adding up deltas are "
+           "compared with exact normals. With --animation, the poses are those at N moments of the animation"},
           {"--active N",
            &active,
-           "how many targets are active at once, with --blend\nThe default is 1, 2, 4, 8, 16 and all",
+           "let N targets be active at once in each pose of --blend\nBy default, 1, 2, 4, 8, 16 and all targets are "
+           "active, one number after the other",
            {.needs = "--blend", .rare = true}},
           {"--seed N",
            &seed,
-           "the seed of the random poses of --blend\nThe default is 1",
+           "set the seed of the random poses of --blend\nThe default is 1",
            {.needs = "--blend", .rare = true}}};
 }
 
@@ -61,11 +62,11 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
     if (input.world)
       return misuse("--world",
                     "the stored normals of the file can only be compared in the space of each mesh; leave --world out, "
-                    "or choose --elements");
+                    "or compute normals with --elements");
     if (elements.crease_angle != 180 || elements.no_weld)
       return misuse("--elements",
-                    "--crease and --no-weld do not apply to the stored normals of the file; leave them out, or compute "
-                    "normals with --elements");
+                    "--crease and --no-weld do not apply to the stored normals of the file; leave both options out, or "
+                    "compute normals with --elements");
     options.progress = progress.callback("comparing");
     Result<BlendComparison> compared = compare_blends(*opened.value().document(), options);
     progress.clear();

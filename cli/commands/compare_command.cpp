@@ -116,49 +116,51 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
       input_table(options.input),
       {{"--each", &options.each,
         "compare several motions side by side\nEvery INPUT and every --sample is a motion of its own"},
-       {"--schemes A,B,...", &options.schemes, "the schemes to compare, in this order (listed below)"},
+       {"--schemes A,B,...", &options.schemes, "compare these schemes, in this order (listed below)"},
        {"--samples N",
         &options.samples,
-        "how many moments of each segment are compared\nBoth ends are included. The default is 21",
+        "compare at N moments of each segment\nBoth ends of the segment are included. The default is 21",
         {.check = check_whole(2, kMostSamples), .rare = true}}},
       options.elements.table(),
       {{"--weighting NAME",
         &options.weighting,
-        "how much each face counts in a vertex normal\nNeeds --elements vertices or corners. area (default), or "
-        "another that sample --help lists",
+        "choose how much each face counts in a vertex normal\nNeeds --elements vertices or corners. The default is "
+        "area, and sample --help lists the others",
         {.rare = true}},
        {"--access KIND",
         &options.access,
-        "how moments are computed: random or sequential\nrandom (default) computes each moment alone, and sequential "
-        "computes it from the one before",
+        "choose how moments are computed: random or sequential\nWith random (default), each moment is computed alone. "
+        "With sequential, each moment is computed from the moment before",
         {.check = check_access, .rare = true}}},
       {{"--certify",
         &options.certify,
-        "bound the largest error of each scheme at any time\nRounding is included, and no sample exceeds the bound",
+        "bound the largest error of each scheme at any time\nThe bound is in degrees, is proven, and includes errors "
+        "of rounding, so no sample exceeds the bound",
         {.rare = true}},
        {"--tolerance DEG", &options.tolerance,
-        "find the cheapest scheme that is always within DEG degrees\nIts bound is certified at every time. The "
-        "exit code is 4 if there is no such scheme"}},
+        "find the cheapest scheme whose error never exceeds DEG degrees\nThe errors are bounded as with --certify. If "
+        "there is no such scheme, the exit code is 4"}},
       options.blend.table(),
       options.truth.table(),
       {{"--face N",
         &options.face,
-        "show what each scheme does to face N, counted from 0\nThe face is in segment 0, or in segment S with N:S. "
-        "--json has all data of Figures 1 to 3 of the paper",
+        "show the normals that each scheme makes for face N, counted from 0\nThe face is taken in segment 0, or in "
+        "segment S if N:S is given. With --json, the output has all data of Figures 1 to 3 of the paper",
         {.rare = true}},
        {"--errors FILE",
         &options.errors,
-        "write the error of every element at every sample, in degrees\nFILE is .npz, for programs, or .ply, for "
-        "MeshLab and Blender, with the largest error of each element as its quality, for one scheme",
+        "write the error of every face (or what --elements says) at every moment, in degrees\nA file whose name ends "
+        "in .npz, for programs, has all errors. A file whose name ends in .ply, for MeshLab and Blender, has the "
+        "largest error of each face as the property quality, and is for one scheme",
         {.rare = true}}},
-      options.run.options("compare only share I of N equal shares of the segments\nOUT is a shard, and chronormal "
-                          "merge puts all shards together"),
+      options.run.options("compare only share I of N equal shares of the segments\nI is a number from 1 to N. OUT "
+                          "becomes a shard, and chronormal merge puts the shards of all N runs together"),
       {{"--json", &options.json, "print the result as JSON, for programs"},
        {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
        {"--table KIND",
         &options.table,
-        "print another kind of table\nOne of text (default), operations (which adds the cost of an evaluation) "
-        "and latex (both tables of the paper, for your meshes)",
+        "print another kind of table\nKIND is text (default), operations, which adds the cost of an evaluation, or "
+        "latex, which has both tables of the paper for your meshes",
         {.excludes = "--json", .check = check_table, .rare = true}},
        {"--no-times", &options.no_times, "leave measured times out, so that each run prints the same", {.rare = true}}},
       options.common.table(false)};
@@ -273,7 +275,7 @@ Status check_files(const CompareArguments& options) {
 
 Result<int> run_blend(const CompareArguments& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
-    return misuse(option, "this option cannot be used with --blend; leave one of the two out");
+    return misuse(option, "this option cannot be used with --blend; leave this option or --blend out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   Progress progress(options.common.quiet);
@@ -304,7 +306,7 @@ std::string option_of_samples(const CompareArguments& options) {
 
 Result<int> run_truth(const CompareArguments& options) {
   if (const std::string option = option_of_samples(options); !option.empty())
-    return misuse(option, "this option cannot be used with --truth; leave one of the two out");
+    return misuse(option, "this option cannot be used with --truth; leave this option or --truth out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto comparison =
@@ -348,9 +350,9 @@ Result<FaceFigureOptions> figure_options(const CompareArguments& options) {
 
 Result<int> run_face(const CompareArguments& options) {
   if (const std::string option = option_of_all_faces(options); !option.empty())
-    return misuse(option, "this option cannot be used with --face; leave one of the two out");
+    return misuse(option, "this option cannot be used with --face; leave this option or --face out");
   if (const auto elements = options.elements.options(); !elements || elements.value().kind != ElementKind::kFaces)
-    return misuse("--elements", "this option cannot be used with --face; leave one of the two out");
+    return misuse("--elements", "this option cannot be used with --face; leave this option or --face out");
   const Result<FaceFigureOptions> how = figure_options(options);
   if (!how) return how.error();
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
@@ -391,15 +393,15 @@ Result<int> run(const CompareArguments& options) {
                     "a weighting has no meaning for normals of faces; add --elements vertices or corners");
     if (!by_area && (options.certify || options.tolerance))
       return misuse(options.certify ? "--certify" : "--tolerance",
-                    "bounds can only be computed for --weighting area; leave one of the two out");
+                    "errors can only be bounded with --weighting area; leave this option or --weighting out");
   }
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
-    return misuse("--tolerance", "the tolerance must be an angle in degrees, at least 0");
+    return misuse("--tolerance", "the tolerance must be an angle of at least 0 degrees, such as 0.5");
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
-                  "bounds can only be computed for random access; leave --access out");
+                  "errors can only be bounded for random access; leave this option or --access out");
   if (const Status output = options.run.check_output(options.common); !output) return output.error();
 
   if (options.run.shard && options.each) return misuse("--shard", "--shard divides a single motion; leave --each out");
@@ -413,10 +415,9 @@ Result<int> run(const CompareArguments& options) {
     return misuse("--table", options.csv ? "--table and --csv cannot be used together; leave one of the two out"
                                          : "a shard cannot be printed as a table; leave --table out");
   if (options.run.resume && (options.each || options.errors))
-    return misuse(
-        "--resume",
-        "--resume cannot be used with --each or --errors, since it keeps only the sums of errors of one motion; leave "
-        "--resume out");
+    return misuse("--resume",
+                  "--resume cannot be used with --each or --errors, since --resume keeps only the sums of errors of "
+                  "one motion; leave --resume out");
   if (options.errors) {
     if (options.each) return misuse("--errors", "--errors is only for a single motion; leave --each out");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)

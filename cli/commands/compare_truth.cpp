@@ -5,11 +5,12 @@
 namespace chronormal::cli {
 
 std::vector<Option> TruthArguments::table() {
-  return {{"--truth N",
-           &every,
-           "keep every Nth keyframe, and compare with the others\nThe keyframes that are left out show how the mesh "
-           "really moved. Only for sequences. Curved paths are compared, too",
-           {.check = check_whole(2)}}};
+  return {
+      {"--truth N",
+       &every,
+       "keep only every Nth keyframe, and compare with the others\nThe keyframes that are left out show how the mesh "
+       "really moved. Schemes and curved paths are compared with them. The input must be a sequence of keyframes",
+       {.check = check_whole(2)}}};
 }
 
 Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input, const ElementArguments& elements,

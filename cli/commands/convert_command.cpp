@@ -61,7 +61,7 @@ Result<int> run(const ConvertArguments& options) {
   if (is_float && motion.value()->motion().origin != std::array<double, 3>{})
     say("convert",
         "the mesh is far from the origin, so that positions lose digits in this format (float32); write .npz or .ply "
-        "to keep them",
+        "to keep all digits",
         Tone::kWarning);
   const Status written = write_motion(*motion.value(), options.common.output, options.common.force,
                                       input.value().expansion(), !options.no_weld);

@@ -44,7 +44,8 @@ Result<int> run(const MergeArguments& options) {
   if (const Status written = print_to(options.common.output, merged.value().json, options.common.force); !written)
     return written.error();
   if (merged.value().is_within) return kExitDone;
-  say("merge", "the result is not within the --tolerance with which the shards were made", Tone::kError);
+  say("merge", "the result is not within the --tolerance with which the shards were made; its JSON has the errors",
+      Tone::kError);
   return kExitBeyond;
 }
 

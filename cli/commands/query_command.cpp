@@ -65,7 +65,7 @@ Result<Question> find_question(const QueryArguments& options) {
     for (const Option& option : other.options)
       if (other.name != found->name && was_given(option))
         return misuse(option.spelling.substr(0, option.spelling.find(' ')),
-                      "this option is only for query " + other.name + "; leave it out");
+                      "this option is only for query " + other.name + "; leave the option out");
   }
   return *found;
 }
@@ -148,7 +148,7 @@ Command query_command() {
   // The command takes an interval of time instead of a range of keyframes, so --from and --to have another meaning
   // here.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
-  input.insert(input.begin(), {"QUESTION", &options->question, "the question to answer (listed below)"});
+  input.insert(input.begin(), {"QUESTION", &options->question, "answer this question (listed below)"});
   for (const Question& question : options->questions)
     for (Option option : question.options) {
       option.help = question.name + ": " + option.help;

@@ -9,9 +9,10 @@ namespace chronormal::cli {
 Question cones_question() {
   auto meshlets = std::make_shared<std::optional<std::size_t>>();
   return {"cones",
-          "the cones that contain all normals of a face, and bounds of meshlets",
+          "cones that contain all normals of a face, and bounds of meshlets",
           {{"--meshlets N", meshlets.get(),
-            "also build meshlets (small groups) of up to N triangles\nTheir bounds have the format of meshoptimizer"}},
+            "also build meshlets, which are groups of up to N triangles\nThe bounds of meshlets have the format of "
+            "meshoptimizer"}},
           [meshlets] {
             return Result<Ask>(
                 [meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,

@@ -15,10 +15,11 @@ Question contain_question() {
   return {"contain",
           "which points are inside a closed mesh, and when they cross its surface",
           {{"--points P.npy", file.get(),
-            "the .npy file of the points, an array of shape (n, 3)\nWith the shape (n, 2, 3), each point moves "
-            "straight from its first place to its second, in the time of the motion"}},
+            "read the points from this .npy file, an array of shape (n, 3)\nIf the shape is (n, 2, 3), each point "
+            "moves straight from its first to its second place during the motion"}},
           [file]() -> Result<Ask> {
-            if (file->empty()) return misuse("--points", "the points are missing; name a .npy file of points");
+            if (file->empty())
+              return misuse("--points", "the points are missing; name a .npy file of points with --points");
             Result<PointPaths> points = read_points_file(*file);
             if (!points) return points.error();
             return Ask([points = std::move(points).value()](const Motion& motion, const QuerySpan& span,

@@ -48,7 +48,9 @@ Result<View> view_of(const FacingOptions& options) {
   const std::vector<double>& n = numbers.value();
   if (n.size() == 6 && options.eye) return View::of_moving_eye({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
   if (n.size() != 3)
-    return misuse(option, options.eye ? "the value must be X,Y,Z or X,Y,Z,X,Y,Z" : "the value must be X,Y,Z");
+    return misuse(option, options.eye
+                              ? "the value must be three numbers X,Y,Z, or six for a camera that moves: X,Y,Z,X,Y,Z"
+                              : "the value must be three numbers X,Y,Z, such as 4,-5,2");
   if (options.eye) return View::of_eye({n[0], n[1], n[2]});
   return View::of_direction({n[0], n[1], n[2]});
 }
@@ -57,23 +59,24 @@ Result<View> view_of(const FacingOptions& options) {
 
 Question facing_question() {
   auto options = std::make_shared<FacingOptions>();
-  return {"facing",
-          "when faces or vertices face a camera, and silhouette edges",
-          {{"--direction X,Y,Z", &options->direction, "the camera is far away in this direction"},
-           {"--eye X,Y,Z", &options->eye,
-            "the camera is at this point\nWith X,Y,Z,X,Y,Z the camera moves straight to the second point, from the "
-            "first to the last time of the motion"},
-           {"--silhouettes", &options->silhouettes, "also list the silhouette edges"}},
-          [options]() -> Result<Ask> {
-            const Result<View> view = view_of(*options);
-            if (!view) return view.error();
-            return Ask([view = view.value(), with = options->silhouettes](const Motion& motion, const QuerySpan& span,
-                                                                          const QueryProgress& progress,
-                                                                          const ElementOptions& elements) {
-              return query_facing(motion, view, with, span, progress, elements);
-            });
-          },
-          true};
+  return {
+      "facing",
+      "when faces or vertices face a camera, and silhouette edges",
+      {{"--direction X,Y,Z", &options->direction, "look from a camera that is far away in this direction"},
+       {"--eye X,Y,Z", &options->eye,
+        "look from a camera at this point\nWith X,Y,Z,X,Y,Z the camera moves straight to the second point, from the "
+        "first to the last time of the motion"},
+       {"--silhouettes", &options->silhouettes, "also list the silhouette edges"}},
+      [options]() -> Result<Ask> {
+        const Result<View> view = view_of(*options);
+        if (!view) return view.error();
+        return Ask([view = view.value(), with = options->silhouettes](const Motion& motion, const QuerySpan& span,
+                                                                      const QueryProgress& progress,
+                                                                      const ElementOptions& elements) {
+          return query_facing(motion, view, with, span, progress, elements);
+        });
+      },
+      true};
 }
 
 }  // namespace chronormal::cli

@@ -52,7 +52,7 @@ Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && (!path || !fs::exists(path_of(*path), failed)))
     return Error{ErrorCode::kFailed, path.value_or("report.html"),
                  "the template of the page is missing; make it with ./run report in the source folder of chronormal, "
-                 "or name one with --template"};
+                 "or name another template with --template"};
   const Result<FileBytes> file = FileBytes::open(*path);
   if (!file) return file.error();
   if (const Status status = check_report_template(file.value().bytes()); !status)
@@ -120,17 +120,19 @@ Result<int> run(const ReportArguments& options) {
 
 Command report_command() {
   auto options = std::make_shared<ReportArguments>();
-  const std::vector<RefusedOption> refused = {
-      {"--world", "errors do not depend on where nodes put a mesh, so report shows each mesh in its own space"}};
+  const std::vector<RefusedOption> refused = {{"--world",
+                                               "errors do not depend on where nodes put a mesh, so report shows each "
+                                               "mesh in its own space; leave --world out"}};
   return {
       "report",
       "Make a web page that compares your model with correct shading",
       {input_table(options->input, refused),
        options->judge.table("also show the normals that these viewers render"),
-       {{"--no-plan", &options->no_plan, "do not compute what bake could do, to save time\nOnly for glTF files"},
+       {{"--no-plan", &options->no_plan,
+         "do not compute what bake could do, to save time\nThis only has an effect on a glTF file"},
         {"--template FILE",
          &options->page_template,
-         "use this page as the template of the report\nThe default is the one that comes with the program",
+         "use this page as the template of the report\nThe default is the template that comes with the program",
          {.check = check_given("the name of the template is empty; give the name of a file, or leave --template out"),
           .rare = true}},
         {"--json", &options->json, "print the result as JSON, for programs"}},

@@ -55,29 +55,33 @@ std::string sample_footer() {
 }
 
 std::vector<std::vector<Option>> tables(SampleArguments& options) {
-  return {input_table(options.input),
-          options.moments.table(),
-          options.elements.table(),
-          {{"--weighting NAME", &options.weighting, "how much each face counts in a vertex normal (listed below)"},
-           {"--length KIND",
-            &options.length,
-            "the length of normals: unit (default) or area\nunit is 1. area is twice the area of a face, or the sum "
-            "around a vertex, and needs --weighting area",
-            {.rare = true}},
-           {"--scheme NAME", &options.scheme,
-            "interpolate normals instead of computing exact ones\nThe normals at the ends of each segment are "
-            "interpolated, as in compare. The schemes are listed below"}},
-          {{"--hard-edges KIND", &options.hard_edges,
-            "take hard edges from the file: groups or normals\nNeeds --elements corners. groups are the smoothing "
-            "groups, and normals the stored normals, of the first .obj, the base or a glTF file"},
-           {"--format NAME",
-            &options.format,
-            "the format of OUT: npy, npz, ply or obj\nOnly needed if the name of OUT does not tell. The default for - "
-            "is npy",
-            {.rare = true}}},
-          options.run.options("write only share I of N equal shares of the times\nchronormal merge puts .npy shards "
-                              "together. .ply and .obj files are numbered as they would be without --shard"),
-          options.common.table(true)};
+  return {
+      input_table(options.input),
+      options.moments.table(),
+      options.elements.table(),
+      {{"--weighting NAME", &options.weighting, "choose how much each face counts in a vertex normal (listed below)"},
+       {"--length KIND",
+        &options.length,
+        "set the length of normals: unit (default) or area\nWith unit, the length is 1. With area, the normal of a "
+        "face is as long as twice its area, and the normal of a vertex is the sum of the normals of its faces; "
+        "--weighting must be area",
+        {.rare = true}},
+       {"--scheme NAME", &options.scheme,
+        "interpolate normals instead of computing exact normals\nThe scheme interpolates in each segment, as in "
+        "compare. The schemes are listed below"}},
+      {{"--hard-edges KIND", &options.hard_edges,
+        "take hard edges from the file: groups or normals\nNeeds --elements corners. With groups, edges between "
+        "smoothing groups are hard; with normals, edges at which stored normals differ. Groups and normals are read "
+        "from the first .obj, the base or a glTF file"},
+       {"--format NAME",
+        &options.format,
+        "write OUT in this format: npy, npz, ply or obj\nThe default is the format that the name of OUT ends in, and "
+        "npy for the standard output (-)",
+        {.rare = true}}},
+      options.run.options(
+          "write only share I of N equal shares of the times\nI is a number from 1 to N. chronormal merge puts .npy "
+          "shards together. .ply and .obj files are numbered as they would be without --shard"),
+      options.common.table(true)};
 }
 
 struct Request {
@@ -108,17 +112,18 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
     if (const auto scheme = scheme_for(options.scheme, kind); !scheme)
       return misuse("--scheme", scheme.error().message);
   } else if (!options.moments.step.empty()) {
-    return misuse("--step", "--step needs a scheme; name one with --scheme");
+    return misuse("--step", "--step needs a scheme; name a scheme with --scheme");
   }
   if (!options.hard_edges.empty()) {
     if (options.hard_edges != "groups" && options.hard_edges != "normals")
-      return misuse("--hard-edges", "the kind must be groups or normals");
+      return misuse("--hard-edges", "the kind of hard edges must be groups or normals");
     if (kind != ElementKind::kCorners)
       return misuse("--hard-edges", "only corners can have hard edges; add --elements corners");
     if (options.elements.crease_angle != 180)
       return misuse("--hard-edges", "--hard-edges and --crease cannot be used together; leave one of the two out");
     if (!options.input.samples.empty())
-      return misuse("--hard-edges", "a built-in morph has no hard edges; give an OBJ or glTF file");
+      return misuse("--hard-edges",
+                    "a built-in morph has no hard edges; give an OBJ or glTF file, or leave --hard-edges out");
   }
   return SampleOptions{elements.value(), weighting.value(),
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, options.scheme};
@@ -146,9 +151,9 @@ Result<Request> understand(const SampleArguments& options) {
   if (!asked) return asked.error();
   sample.value().stepping = asked.value().stepping;
   if (sample.value().stepping && !make_scheme(options.scheme).value()->sequential_operations())
-    return misuse(
-        "--step",
-        options.scheme + " cannot go step by step, since it computes every normal on its own; give --times instead");
+    return misuse("--step", options.scheme +
+                                " cannot be played step by step, since this scheme computes each normal alone; give "
+                                "--times instead of --step");
   if (const Status status = options.run.check(); !status) return status.error();
   Request request{
       sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}, {}};
@@ -180,7 +185,9 @@ Result<Request> understand(const SampleArguments& options) {
 Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
   const std::string& file = input.shaded_by();
   if (file.empty())
-    return misuse("--hard-edges", input.name() + " has neither normals nor smoothing groups; give an OBJ or glTF file");
+    return misuse("--hard-edges",
+                  input.name() +
+                      " has neither normals nor smoothing groups; give an OBJ or glTF file, or leave --hard-edges out");
   if (what == "groups") {
     if (input.document() != nullptr)
       return misuse("--hard-edges", "a glTF file has no smoothing groups; give --hard-edges normals");
@@ -213,7 +220,7 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
     say("sample",
         formatted("the result will have {:.1f} GB, for {} with {} each{}", bytes / 1e9,
                   counted(moments, "moment", "moments"), counted(elements, "normal", "normals"),
-                  moments > 1 ? "; to make it smaller, give fewer moments" : ""),
+                  moments > 1 ? "; to make the result smaller, give fewer moments" : ""),
         Tone::kWarning);
 }
 
@@ -251,13 +258,14 @@ Result<int> run(const SampleArguments& options) {
   if (const Status done = run.finish(); !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
-        formatted("of {} of {}, {} written as (0, 0, 0), since the faces there have no area",
+        formatted("of {} of {}, {} written as (0, 0, 0), since the faces there have no area or their normals cancel "
+                  "each other",
                   counted(written.value().normals, "normal", "normals"), options.elements.kind(),
                   counted(written.value().zeros, "is", "are")),
         Tone::kWarning);
   if (request.sample.stepping && !options.common.quiet) {
     const Drift& drift = written.value().drift;
-    say_text(formatted("scheme {} played step by step drifts from the curve by up to {}, at {} {} and time {}\n",
+    say_text(formatted("scheme {} played step by step drifts from its curve by up to {}, at {} {} and time {}\n",
                        options.scheme, with_degrees(with_digits(drift.largest * kDegreesPerRadian, 3)),
                        one_element(request.sample.elements.kind), grouped(drift.output), with_digits(drift.time, 6)));
   }

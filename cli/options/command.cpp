@@ -26,20 +26,22 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)
     say_text(formatted(
-        "{} paths: {} cut into {}, whose normals are within {} of those of the curves; coordinates are rounded by up "
-        "to {:.1g}{}\n",
+        "{} paths: {} cut into {}, whose normals are within {} of the normals of the curves; rounding moves "
+        "coordinates by up to {:.1g}{}\n",
         cut.skins ? "skinned" : path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
         counted(cut.pieces, "straight piece", "straight pieces"), with_degrees(formatted("{}", cut.path.tolerance)),
         cut.rounding, cut.skins ? ", in the scene's world" : ""));
   if (cut.beyond > 0)
     warn(
-        formatted("in {} of {} (one face in one segment), normals may differ by more than {} from those "
-                  "of the curve: the face almost vanishes between two keyframes, or needs more pieces than "
-                  "--max-expansion allows",
+        formatted("in {} of {} (a case is one face in one segment), normals may differ by more than {} from the "
+                  "normals of the curve: the face almost vanishes between two keyframes, or needs more straight pieces "
+                  "than --max-expansion allows",
                   grouped(cut.beyond), counted(faces * cut.segments, "case", "cases"),
                   with_degrees(formatted("{}", cut.path.tolerance))));
   if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
-    warn("there are only two keyframes, so vertices move straight between them, as with --path linear");
+    warn(
+        "there are only two keyframes, so vertices move straight between them, as with --path linear; give more "
+        "keyframes for curved paths");
   if (is_too_sparse(cut.bend))
     warn(
         formatted("the keyframes are too far apart for curves through them, which bend by {:.2f} of their length (at "
@@ -59,32 +61,32 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
 std::string morph_names() {
   std::string names;
   for (const BuiltinMorph& morph : builtin_morphs()) names.append(morph.name).append(", ");
-  return formatted("use a built-in morph instead of files\nOne of {}or {}, which is a set of targets", names,
+  return formatted("use a built-in morph instead of files\nNAME is {}or {}, which is a set of targets", names,
                    builtin_blend_shapes().front().name);
 }
 
 }  // namespace
 
 std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
-  return {
-      {"--weighting NAME",
-       &weighting,
-       "how much each face counts in the true normals\nOne of area, angle, uniform, area-angle, max, inverse-edges and "
-       "inverse-roots. The default is what the base normals of the file follow, else area",
-       {.rare = true}},
-      {"--for VIEWER,...", &viewers,
-       of_viewers +
-           ", such as three,godot\nViewers are three, babylon, playcanvas, godot, filament and bevy. Compressors, "
-           "whose result is judged in a viewer, are gltfpack, quantize and meshopt. all stands for every one of them"},
-      {"--host NAME,...",
-       &viewers_by_old_name,
-       "the old name of --for; the next version will not know --host",
-       {.rare = true}},
-      {"--samples N",
-       &samples,
-       "how many moments of each segment are judged\nBoth ends are included. The default is 21, and fewer in "
-       "animations of more than 10 key intervals or 10 targets",
-       {.check = check_whole(2, kMostAuditSamples), .rare = true}}};
+  return {{"--weighting NAME",
+           &weighting,
+           "choose how much each face counts in the true normals\nNAME is area, angle, uniform, area-angle, max, "
+           "inverse-edges or inverse-roots. The default is the weighting that the base normals of the file follow, or "
+           "area if they follow none",
+           {.rare = true}},
+          {"--for VIEWER,...", &viewers,
+           of_viewers + ", such as three,godot\nViewers are three, babylon, playcanvas, godot, filament and bevy. "
+                        "Compressors, whose files a viewer then renders, are gltfpack, quantize and meshopt. The word "
+                        "all stands for all viewers and compressors. The default is none"},
+          {"--host NAME,...",
+           &viewers_by_old_name,
+           "do the same as --for, whose old name this is\nUse --for, since the next version will not know --host",
+           {.rare = true}},
+          {"--samples N",
+           &samples,
+           "judge N moments of each segment\nBoth ends of the segment are included. The default is 21, and fewer in "
+           "animations of more than 10 key intervals or 10 targets",
+           {.check = check_whole(2, kMostAuditSamples), .rare = true}}};
 }
 
 Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_weighting,
@@ -97,7 +99,7 @@ Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_we
   if (!viewers_by_old_name.empty() && !viewers.empty())
     return misuse("--host", "--host is the old name of --for; give only --for");
   if (!viewers_by_old_name.empty())
-    say(command, "--host is now called --for; the next version will not know --host", Tone::kWarning);
+    say(command, "--host is now called --for; use --for, since the next version will not know --host", Tone::kWarning);
   const std::string& named = viewers.empty() ? viewers_by_old_name : viewers;
   if (!named.empty()) {
     Result<std::vector<Viewer>> found = find_viewers(named);
@@ -109,7 +111,8 @@ Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_we
 
 Status check_viewers(const std::vector<Viewer>& viewers, const Input& input) {
   if (input.document() != nullptr || viewers.empty()) return Success{};
-  return misuse("--for", "viewers can only be chosen for glTF files, and this input is not one; leave --for out");
+  return misuse("--for",
+                "viewers can only be chosen for a glTF file, and this input has another format; leave --for out");
 }
 
 std::string short_name(std::string path) {
@@ -121,7 +124,7 @@ std::string short_name(std::string path) {
 std::vector<Option> CommonOptions::table(bool output_required) {
   return {{"-o,--output OUT",
            &output,
-           output_required ? "where to write" : "where to write (default: standard output)",
+           output_required ? "the file to write" : "the file to write (default: standard output)",
            {.required = output_required}},
           {"--force", &force, "overwrite OUT if it exists"},
           {"-q,--quiet", &quiet, "show no progress bar"}};
@@ -140,15 +143,18 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        "Other motions in one file are .npz and .md2. The name - stands for one file on standard input"},
       {"--base FILE",
        &input.base,
-       "the mesh of which every INPUT is a morph target\nThe inputs are .obj or .ply meshes, .target or .target.gz "
-       "files of MakeHuman, or folders of them",
-       {.check = check_given("the name of the file is empty; give the name of a mesh")}},
+       "use this mesh as the base, of which every INPUT is a morph target\nThe inputs are .obj or .ply meshes, .target "
+       "or .target.gz files of MakeHuman, or folders of them",
+       {.check = check_given("the name of the file is empty; give the name of the mesh that is the base")}},
       {"--animation NAME",
        &input.animation,
-       "the animation of a glTF file to use, by name or number\nWithout it, each morph target is a motion of its own, "
-       "from weight 0 to 1",
+       "use this animation of a glTF file, by name or number\nWithout this option, each morph target is a motion of "
+       "its own, from weight 0 to 1",
        {.check = check_given("the name of the animation is empty; give a name or a number")}},
-      {"--world", &input.world, "place the meshes of a glTF file where its nodes put them", {.rare = true}},
+      {"--world",
+       &input.world,
+       "place the meshes of a glTF file where its nodes put them\nBy default, each mesh stays in its own space",
+       {.rare = true}},
       {"--allow-external",
        &input.allow_external,
        "allow a glTF file to use files outside of its folder",
@@ -159,25 +165,30 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        "The limit keeps a small, hostile file from taking all memory",
        {.check = check_whole(0), .rare = true}},
       {"--sample NAME", &input.samples, morph_names()},
-      {"--fps N", &input.frames_per_second, "keyframes per second, for formats without times\nThe default is 1"},
+      {"--fps N", &input.frames_per_second,
+       "set the keyframes per second, for formats without times\nThe default is 1"},
       {"--from K",
        &input.from,
-       "the first keyframe of a sequence to use, counted from 0\nThe default is 0",
+       "begin a sequence with keyframe K, counted from 0\nThe default is 0",
        {.check = check_whole(0)}},
       {"--to K",
        &input.to,
-       "the last keyframe of a sequence to use, counted from 0\nThe default is the last one of the input",
+       "end a sequence with keyframe K, counted from 0\nThe default is the last keyframe of the input",
        {.check = check_whole(0)}},
-      {"--every N", &input.every, "use only every Nth keyframe of a sequence", {.check = check_whole(1), .rare = true}},
-      {"--loop", &input.loop, "let the first keyframe follow the last one, as in a loop", {.rare = true}},
+      {"--every N",
+       &input.every,
+       "use only every Nth keyframe of a sequence\nThe default is 1, for every keyframe",
+       {.check = check_whole(1), .rare = true}},
+      {"--loop", &input.loop, "let the first keyframe follow the last keyframe, as in a loop", {.rare = true}},
       {"--strict",
        &input.strict,
-       "refuse a file if a part of it would be ignored\nWithout it, a warning says what was ignored",
+       "refuse a file if a part of the file would be ignored\nWithout this option, a warning says what was ignored",
        {.rare = true}},
       {"--path NAME",
        &input.path,
-       "how vertices move between the keyframes of a sequence\nlinear (default) is straight, catmull-rom goes on "
-       "curves through the keyframes, and hermite uses the velocities of the file. Curves are cut into straight pieces "
+       "choose how vertices move between the keyframes of a sequence\nlinear (default) is straight, catmull-rom goes "
+       "on curves through the keyframes, and hermite uses the velocities of the file. Curves are cut into straight "
+       "pieces "
        "whose normals are within 0.01 degrees of the curve, or DEG with NAME:DEG, and at most --max-expansion pieces "
        "for each segment",
        {.check = check_path_name, .rare = true}}};
@@ -190,10 +201,10 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
 std::vector<Option> ElementArguments::table() {
   const auto marked = [this](const char* name) { return usual == name ? formatted("{} (default)", name) : name; };
   return {{"--elements KIND", &asked,
-           formatted("which normals: {}, {} or {}", marked("faces"), marked("vertices"), marked("corners"))},
+           formatted("use the normals of {}, {} or {}", marked("faces"), marked("vertices"), marked("corners"))},
           {"--crease DEG", &crease_angle,
            "treat edges sharper than DEG degrees as hard\nNeeds --elements corners. The angle is between two "
-           "faces in the first keyframe. The default is 180, for no hard edges"},
+           "faces in the first keyframe. The default is 180, which makes no edge hard"},
           {"--no-weld", &no_weld, "do not merge vertices that are at the same point at all times", {.rare = true}}};
 }
 

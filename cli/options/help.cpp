@@ -285,7 +285,8 @@ std::string help_of_command(const Command& command, bool all, std::size_t column
   };
   visit_options(command, false, add_row);
   add_rows("\nOptions:\n", false, false);
-  text += row("-h, --help", "print this", columns) + row("--help-all", "print more about all options", columns);
+  text += row("-h, --help", "print this help", columns) +
+          row("--help-all", "print all options with more about each of them", columns);
   add_rows("\nOptions for the input:\n", true, false);
   if (all) add_rows("\nOptions that few need:\n", false, true);
   if (!command.footer.empty()) text += formatted("\n{}\n", flowing(command.footer, 0, columns));

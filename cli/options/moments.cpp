@@ -220,16 +220,16 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
 
 std::vector<Option> MomentArguments::table() {
   return {{"--times LIST", &times,
-           "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
-           "keyframes. A mesh that does not move needs no times"},
+           "compute normals at these times in seconds\nLIST is 0,0.5,1 or FIRST:STEP:LAST, or the word keys, which "
+           "stands for the times of the keyframes. A mesh that does not move needs no times"},
           {"--weights LIST", &weights,
-           "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
-           "target needs a weight. Repeat the option for more poses"},
+           "compute normals in this pose of blend shapes\nLIST is NAME=W,... or W1,W2,... With names, all other "
+           "weights are 0; without names, each target needs a weight. Repeat the option for more poses"},
           {"--step N",
            &step,
-           "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step only adds to the one before. "
-           "Every 64 steps, normals are computed anew from the curve, or every M steps with N:M, or never with N:0. "
-           "The largest drift is printed",
+           "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step only adds to the result of the "
+           "step before. Every 64 steps, normals are computed anew from the curve, or every M steps with N:M, or never "
+           "with N:0. The largest drift is printed",
            {.excludes = "--times", .rare = true}}};
 }
 
@@ -272,7 +272,8 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
     if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
     if (steps >= kMostTimes / segments)
-      return misuse("--step", "the steps of all segments are more than 1,000,000 moments; take fewer steps");
+      return misuse("--step",
+                    "the steps of all segments together are more than 1,000,000 moments; give a smaller --step");
     return step_moments(motion, steps);
   }
   if (const Status status = check_kind(motion, asked); !status) return status.error();

@@ -155,7 +155,7 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   std::string others;
   for (const Command& other : commands)
     if (is_in(names_of_options(other), name)) others += (others.empty() ? "" : ", ") + other.name;
-  if (!others.empty()) return " here; it belongs to " + others;
+  if (!others.empty()) return " here; this option belongs to " + others;
   std::vector<std::string> own = names_of_options(command);
   own.emplace_back("--help");
   return suggestion(name, own);

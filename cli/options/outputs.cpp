@@ -34,11 +34,12 @@ Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<N
     const auto key = key_of_file(output.path);
     if (!key) continue;
     if (const auto found = files_read.find(*key); found != files_read.end())
-      return misuse(output.option, formatted("this file would overwrite the file of {}, {}; choose another name",
-                                             found->second->option, printable(found->second->path)));
+      return misuse(output.option,
+                    formatted("this file would overwrite a file that is read ({}, {}); choose another name",
+                              found->second->option, printable(found->second->path)));
     if (const auto [found, is_new] = written.emplace(*key, &output); !is_new)
       return misuse(output.option,
-                    formatted("this file is also the file of {}; choose another name", found->second->option));
+                    formatted("this file is named twice, also for {}; choose another name", found->second->option));
   }
   return Success{};
 }

@@ -114,7 +114,7 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   if (!journal_) return Success{};
   if (input.document() != nullptr || motion.kind != MotionKind::kSequence)
     return misuse("--resume",
-                  "--resume is only for sequences of keyframes, and the input is not one; leave --resume out");
+                  "--resume is only for sequences of keyframes, and this input is of another kind; leave --resume out");
   run.journal = &*journal_;
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
@@ -152,8 +152,8 @@ std::vector<Option> RunArguments::options(const std::string& of_what) {
   return {{"--shard I/N", &shard, of_what, {.rare = true}},
           {"--resume",
            &resume,
-           "go on where an interrupted run of this command ended\nWhat is done is kept in OUT.journal. The result has "
-           "the same bytes as without a break",
+           "go on where an interrupted run of this command ended\nFinished work is kept in the file OUT.journal. The "
+           "result has the same bytes as that of a run without a break",
            {.rare = true}}};
 }
 
@@ -168,18 +168,23 @@ Result<std::optional<Shard>> RunArguments::read_shard() const {
   };
   const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
                         is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
-  if (!is_share) return misuse("--shard", formatted("'{}' must be a share such as 1/8, the first of 8", *shard));
+  if (!is_share)
+    return misuse(
+        "--shard",
+        formatted("'{}' is not a share; write I/N with I from 1 to N, such as 1/8 for the first of 8 shares", *shard));
   return std::optional(Shard{index - 1, count});
 }
 
 Status RunArguments::check(const std::string& other) const {
   const std::string option = shard ? "--shard" : resume ? "--resume" : other;
   if (const std::size_t copies = count_of_copies(); copies > 1 && !shard)
-    return misuse("mpirun", formatted("mpirun has started {} copies of a program without MPI, and each would do all of "
-                                      "the work; build it with -DCHRONORMAL_MPI=ON, or give each copy its own --shard",
-                                      copies));
+    return misuse("mpirun",
+                  formatted("mpirun has started {} copies of a program without MPI, and each would do all of the work; "
+                            "build the program with -DCHRONORMAL_MPI=ON, or give each copy its own --shard",
+                            copies));
   if (has_ranks() && !option.empty())
-    return misuse(option, "this option cannot be used with mpirun; leave out one of the two");
+    return misuse(option,
+                  "this option cannot be used with mpirun; leave the option out, or run the command without mpirun");
   const Result<std::optional<Shard>> read = read_shard();
   return read ? Status(Success{}) : Status(read.error());
 }

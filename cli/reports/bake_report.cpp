@@ -78,10 +78,11 @@ std::string weighting_lines(const GltfBake& bake) {
       if (++count <= kMostNamed) names.append(count > 1 ? ", " : "").append(mesh_name(mesh));
     }
     if (count == 0 || info.weighting == Weighting::kArea) continue;
-    if (count > kMostNamed) names += formatted(" and {} more", count - kMostNamed);
-    text +=
-        formatted("{}: normals are {}-weighted, and could only be approximated; area-weighted normals can be exact\n",
-                  names, info.name);
+    if (count > kMostNamed) names += " and " + counted(count - kMostNamed, "more mesh", "more meshes");
+    text += formatted(
+        "{}: normals are {}-weighted, and could only be approximated; only area-weighted normals (--weighting area) "
+        "can be exact\n",
+        names, info.name);
   }
   return text;
 }
@@ -243,7 +244,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
   add_others(left_out, "errors that bake could not make smaller in ");
   std::erase_if(others, [](const ViewerRow& row) { return row.after.mean <= row.before.mean + kHarmlessTolerance; });
   if (!others.empty())
-    text += formatted("the file is now worse in {}; if it is shown there, bake the original file with --for {}\n",
+    text += formatted("the file is now worse in {}; if the file is shown there, bake the original file with --for {}\n",
                       titles_of(others), others.front().viewer->name);
   return text;
 }
@@ -386,10 +387,10 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
              "nothing was changed, since this file was baked before. For smaller errors, bake the ORIGINAL file\n";
     }
     if (bake.meshes.empty()) return text + "nothing was changed, since no morph target moves a face\n";
-    return text + (are_all_within(bake) ? "nothing was changed, since all normals are within the tolerance\n"
-                                        : "nothing was changed, since bake found nothing better for the named viewers "
-                                          "that harms no other viewer "
-                                          "more; to correct the file for one viewer, name it with --for\n");
+    return text + (are_all_within(bake)
+                       ? "nothing was changed, since all normals are within the tolerance\n"
+                       : "nothing was changed, since bake found nothing better for the named viewers without more harm "
+                         "to other viewers; to correct the file for one viewer, give only that viewer with --for\n");
   }
   text += verdict(bake, report);
   Table table;
@@ -425,8 +426,8 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   std::size_t tangents = 0;
   for (const BakedMesh& mesh : bake.meshes) tangents += mesh.new_tangents;
   if (tangents > 0)
-    text += counted(tangents, "target has new tangents, since its", "targets have new tangents, since their") +
-            " old ones did not fit the normals\n";
+    text += counted(tangents, "target has new tangents, since the", "targets have new tangents, since the") +
+            " old tangents did not fit the normals\n";
   return text + left_text(bake) + viewers_text(bake, report) + left_over(bake) + lines_after(report);
 }
 
@@ -449,7 +450,7 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                                      : ""});
     }
   }
-  return formatted("{}: these are the candidates that bake can choose from; --plan writes nothing\n\n",
+  return formatted("{}: bake can choose from these candidates, which --plan lists without writing a file\n\n",
                    printable(report.input)) +
          table.text() + plan_of_viewers(bake, false) + plan_of_viewers(bake, true);
 }
@@ -467,7 +468,8 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   if (bake.keys) {
     text += formatted("{}, {} of them between keyframes; {} left out; at equal steps of time, {} would be needed\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
-                      counted(bake.keys->left_out, "keyframe", "keyframes"), counted(bake.keys->even, "key", "keys"));
+                      counted(bake.keys->left_out, "keyframe was", "keyframes were"),
+                      counted(bake.keys->even, "key", "keys"));
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
                       four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
     if (bake.cut)

@@ -63,7 +63,7 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
       if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
     };
     add(row.flagged, share(row.flagged) + (row.flagged == 1 ? " was" : " were") + " computed in double precision");
-    add(row.fallbacks, share(row.fallbacks) + " used another scheme, since this one is undefined there");
+    add(row.fallbacks, share(row.fallbacks) + " used another scheme, since " + row.scheme + " is undefined there");
     if (row.certified)
       add(row.certified->unbounded, share(row.certified->unbounded) +
                                         (row.certified->unbounded == 1 ? " has" : " have") +

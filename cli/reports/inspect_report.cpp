@@ -270,7 +270,7 @@ std::string inspect_text(const Inspected& input) {
 
   const std::vector<Trouble> troubles = find_trouble(input);
   const std::vector<std::string> notes = input.opened->notes();
-  if (!notes.empty()) text += '\n' + heading("How it was read:") + '\n';
+  if (!notes.empty()) text += '\n' + heading("How the input was read:") + '\n';
   for (const std::string& note : notes) text += "  " + printable(note) + '\n';
   if (troubles.empty()) return text + (notes.empty() ? "\nno problems found\n" : "");
   text += '\n' + heading("What can make normals wrong:") + '\n';

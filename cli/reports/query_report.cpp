@@ -50,7 +50,8 @@ std::string text_of(const QueryTable& table) {
   std::string text = "\n";
   text += heading(formatted("{}:", table.meaning)) + '\n' + shown.text();
   if (table.rows() > rows)
-    text += formatted("... and {} more (-o OUT.npz and --json have all)\n", grouped(table.rows() - rows));
+    text += formatted("... and {} (-o OUT.npz and --json have all)\n",
+                      counted(table.rows() - rows, "more row", "more rows"));
   return text;
 }
 

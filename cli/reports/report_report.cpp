@@ -46,8 +46,8 @@ std::string report_text(const Report& report, const std::string& output, std::si
                                counted(bytes, "byte", "bytes"));
   text += parts_table(report) + '\n' + places_table(report);
   if (!report.plan_message.empty())
-    text += formatted("\nbake could not be planned: {}\n", printable(report.plan_message));
-  if (!report.thinned.empty()) text += "\nleft out to keep the page small:\n";
+    text += formatted("\nthe page does not show what bake could do: {}\n", printable(report.plan_message));
+  if (!report.thinned.empty()) text += "\nto keep the page small, this was left out:\n";
   for (const std::string& sentence : report.thinned) text += formatted("  {}\n", sentence);
   return text;
 }

@@ -13,7 +13,7 @@ const bytesOf = (data) => {
   if (data instanceof Uint8Array) return data;
   if (data instanceof ArrayBuffer) return new Uint8Array(data);
   if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-  throw new TypeError('the input must be a Uint8Array, an ArrayBuffer or a view of one');
+  throw new TypeError('the input must be a Uint8Array, an ArrayBuffer or a view of an ArrayBuffer');
 };
 
 // Returns a name for an input that has no name. A GLB is recognised by its first bytes, and other bytes are taken for

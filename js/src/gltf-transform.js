@@ -113,13 +113,13 @@ export function chronormal({ onReport, ...options } = {}) {
 // The options of the program that command() below offers. Each entry has the name, the spelling, the help, and a
 // function that converts the text to a value.
 const OPTIONS = [
-  ['for', '--for <VIEWERS>', 'the viewers that the result is made for, such as three,godot, or all'],
-  ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed, in degrees', Number],
-  ['encode', '--encode <HOW>', 'how corrections are encoded: smallest, harmless, exact or endpoint'],
-  ['weighting', '--weighting <RULE>', 'how much each face counts in a vertex normal'],
-  ['maxTargets', '--max-targets <N>', 'at most N morph targets for each mesh', Number],
-  ['maxBytes', '--max-bytes <N>', 'at most N bytes of normals for each mesh', Number],
-  ['animationsOnly', '--animations-only', 'correct only the animations, not single sliders'],
+  ['for', '--for <VIEWERS>', 'make the result for these viewers, such as three,godot, or for all (default: three, babylon, playcanvas and bevy)'],
+  ['tolerance', '--tolerance <DEGREES>', 'set the largest error allowed, in degrees (default: 0.5, and 0.001 with exact)', Number],
+  ['encode', '--encode <HOW>', 'choose how new normals are stored: smallest (default), harmless, exact or endpoint'],
+  ['weighting', '--weighting <RULE>', 'choose how much each face counts in a vertex normal (default: as in the base normals)'],
+  ['maxTargets', '--max-targets <N>', 'write at most N morph targets for each mesh (default: as many as viewers can show)', Number],
+  ['maxBytes', '--max-bytes <N>', 'spend at most N bytes on the normals of each mesh', Number],
+  ['animationsOnly', '--animations-only', 'correct only the animations, not single sliders (weights of one target)'],
 ];
 
 /**
@@ -129,7 +129,7 @@ const OPTIONS = [
 export function command({ program, io, Session }) {
   const made = program
     .command('chronormal', 'Correct the normals of morph targets')
-    .help('Corrects normals while morph targets move. `npx chronormal bake --help` explains the options.')
+    .help('Corrects the normals of meshes that morph targets move. `npx chronormal bake --help` explains the options.')
     .argument('<input>', 'The glTF 2.0 model to read (.glb, .gltf)')
     .argument('<output>', 'The file to write');
   for (const [, written, said] of OPTIONS) made.option(written, said);

@@ -75,7 +75,7 @@ export async function perform(platform, { args, files, outputs, memoryLimit }, o
     ended = await run(platform, args, world);
   } catch (error) {
     if (!(error instanceof UnusableName)) throw error;
-    return { code: USAGE, stdout: '', stderr: `${JSON.stringify(error.message)}: this cannot be the name of a file`, files: {} };
+    return { code: USAGE, stdout: '', stderr: `${JSON.stringify(error.message)}: this text cannot be the name of a file; give another name`, files: {} };
   }
   const whole = new Uint8Array(stdout.reduce((size, bytes) => size + bytes.length, 0));
   stdout.reduce((at, bytes) => (whole.set(bytes, at), at + bytes.length), 0);

@@ -62,7 +62,8 @@ def _indices(array, place):
     if array.size > 0 and (array.min() < 0 or array.max() > 0xFFFFFFFF):
         where = _np.argwhere((array < 0) | (array > 0xFFFFFFFF))[0]
         position = ", ".join(str(i) for i in where)
-        raise ValueError(f"{place}[{position}]: {array[tuple(where)]} cannot be an index")
+        raise ValueError(f"{place}[{position}]: {array[tuple(where)]} cannot be an index; an index is a whole number from 0 to "
+                         "4,294,967,295")
     return _np.ascontiguousarray(array, dtype=_np.uint32).reshape(-1)
 
 
@@ -89,7 +90,7 @@ def _polygons(faces):
     if _are_offsets(faces):
         offsets = _indices(faces[0], "offsets")
         if offsets.size == 0:
-            raise ValueError("offsets: there must be one more offset than faces")
+            raise ValueError("offsets: there must be one more offset than faces, but the array is empty; give (0,) for no faces")
         return offsets, _indices(faces[1], "corners")
     if not isinstance(faces, _np.ndarray):
         faces = list(faces)
@@ -373,7 +374,8 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
         for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
                             "times": times, "certify": certify, "tolerance": tolerance is not None}.items():
             if given:
-                raise ValueError(f"{name}: this option cannot be used with face, which examines a single face; leave one of the two out")
+                raise ValueError(f"{name}: this option cannot be used with face, which examines a single face; leave this option "
+                                 "or face out")
         number, segment = face if isinstance(face, tuple) else (face, 0)
         return _json.loads(_chronormal.figure_of_face(opened, list(schemes), samples, number, segment))
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
@@ -430,7 +432,8 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
     opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
     if scheme is None:
         if elements != "vertices":
-            raise ValueError("elements: an audit can only judge vertices")
+            raise ValueError("elements: errors of stored normals are known for vertices only; leave elements out, or name a "
+                             "scheme")
         _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
@@ -486,9 +489,9 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
     """
     if (direction is None) == (eye is None):
-        raise ValueError("direction: the camera is missing; give either direction or eye")
+        raise ValueError("direction: there must be one camera; give either direction or eye")
     if eye_to is not None and eye is None:
-        raise ValueError("eye_to: the option eye is missing; give the place from which the camera moves to eye_to as eye")
+        raise ValueError("eye_to: the option eye is missing; give as eye the place from which the camera moves to eye_to")
     first = _floats(eye, "eye") if direction is None else _floats(direction, "direction")
     last = first if eye_to is None else _floats(eye_to, "eye_to")
     if first.shape != (3,) or last.shape != (3,):

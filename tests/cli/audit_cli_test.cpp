@@ -91,7 +91,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
   EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
   const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
-  EXPECT_EQ(torn.err, "chronormal audit: 4 edges are torn at one moment, beyond the limit of 3\n");
+  EXPECT_EQ(torn.err, "chronormal audit: 4 edges are torn at one moment, more than --tears allows (3)\n");
   expect_words(torn.out, {"; beyond 91 degrees and 3 torn edges\n"});
   const ProcessResult in_viewer = run("hinge.glb --tears 3 --for three --json");
   EXPECT_EQ(in_viewer.exit_code, 4);
@@ -266,7 +266,7 @@ TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_viewe
 TEST_F(AuditCli, built_in_morphs_and_targets_of_a_base_are_inputs) {
   expect_words(text_of("--sample twist --samples 3"), {"twist: errors of ", "chronormal bake --sample twist"});
   expect_words(text_of("--base a.obj b.obj bare.obj --rule slerp"),
-               {"write the targets as a .glb with chronormal convert, and bake that file\n"});
+               {"write the base and its targets as a .glb with chronormal convert, and bake that file\n"});
   const Json json = json_of("--base a.obj b.obj bare.obj");
   ASSERT_EQ(json["subjects"].size(), 2U);
   EXPECT_EQ(json["subjects"][1]["target"], 1);
@@ -286,7 +286,7 @@ TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_no_gate_alon
   mesh.targets.clear();
   folder_.write("still.glb", mesh.file().glb());
   EXPECT_EQ(text_of("still.glb"),
-            "still.glb: there is nothing to judge, since no target and no animation moves stored normals\n");
+            "still.glb: there is nothing to judge, since no morph target and no animation moves stored normals\n");
   const ProcessResult gate = run("still.glb --tolerance 180 --json"),
                       several = run("still.glb still.glb --tolerance 1");
   EXPECT_EQ(gate.exit_code, 4);
@@ -384,7 +384,7 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
   test::ShadedMesh mesh = test::hinge();
   mesh.targets.resize(20, mesh.targets[0]);
   folder_.write("many.glb", mesh.file().glb());
-  expect_words(text_of("many.glb"), {"... and 4 more with smaller errors (--json has all)\n"});
+  expect_words(text_of("many.glb"), {"... and 4 more motions with smaller errors (--json has all)\n"});
   EXPECT_EQ(json_of("many.glb")["subjects"].size(), 20U);
 }
 
@@ -661,7 +661,7 @@ TEST_F(AuditCli, every_error_goes_into_a_file_beside_the_report) {
   expect_error("hinge.glb --errors e.npz", 1, "e.npz: ");
   expect_error("hinge.glb --errors e.txt", 2, ".npz or .ply");
   expect_error("hinge.glb hinge.glb --errors f.npz", 2, "--errors: --errors is only for a single input");
-  expect_error("hinge.glb --errors f.npz -o f.npz", 2, "--errors: this file is also the file of OUT");
+  expect_error("hinge.glb --errors f.npz -o f.npz", 2, "--errors: this file is named twice, also for OUT");
   expect_error("a.obj a.obj --errors f.npz", 3, "nothing could be judged");
   EXPECT_EQ(folder_.entry_count(), entries) << "what fails leaves nothing";
 }

@@ -90,7 +90,8 @@ TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
         if (worse.empty())
           EXPECT_EQ(result.out.find(words), std::string::npos) << result.out;
         else
-          expect_words(result.out, {words + worse + "; if it is shown there, bake the original file with --for "});
+          expect_words(result.out,
+                       {words + worse + "; if the file is shown there, bake the original file with --for "});
         if (!worse.empty()) ++named;
         if (*tolerance == '\0') {
           EXPECT_LE(harm, gain) << input << ", seed " << seed;
@@ -308,7 +309,7 @@ TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
   }
   EXPECT_GT(worse, 0U);
   expect_words(run("huge.glb -o other.glb").out,
-               {"bake found nothing better for the named viewers that harms no other viewer more"});
+               {"bake found nothing better for the named viewers without more harm to other viewers"});
   EXPECT_EQ(run("moving.glb -o fine.glb").err.find("worse"), std::string::npos);
 }
 
@@ -494,7 +495,7 @@ TEST_F(BakeCli, a_plan_lists_the_forms_and_writes_nothing) {
   const std::size_t entries = folder_.entry_count();
   const ProcessResult plan = run("moving.glb --plan --for three"), json = run("moving.glb --plan --json");
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
-  expect_words(plan.out, {"--plan writes nothing", "as it is", "own deltas", "low rank", "recommended"});
+  expect_words(plan.out, {"--plan lists without writing a file", "as it is", "own deltas", "low rank", "recommended"});
   EXPECT_EQ(Json::parse(json.out)["meshes"][0]["candidates"][0]["name"], "as it is");
   EXPECT_EQ(plan.out.find("animations only"), std::string::npos);
   const ProcessResult alone = run("moving.glb --plan --for three --animations-only");

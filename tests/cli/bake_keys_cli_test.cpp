@@ -34,7 +34,7 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   EXPECT_EQ(report["keys"]["beyond"], 0);
   EXPECT_LE(report["bound_degrees"], 2);
   const std::string text = run("--sample bend --encode keys --tolerance 2 --force -o bend.glb").out;
-  EXPECT_NE(text.find(" between keyframes; 0 keyframes left out; "), std::string::npos) << text;
+  EXPECT_NE(text.find(" between keyframes; 0 keyframes were left out; "), std::string::npos) << text;
   EXPECT_NE(text.find("\nthe error is at most "), std::string::npos) << text;
   // A bake with --encode keys leaves a mark in the file that has the same form as the mark of a bake for all viewers,
   // so all readers of marks understand it.

@@ -373,7 +373,7 @@ TEST_F(Cli, every_option_that_help_lists_is_taken) {
 }
 
 TEST_F(Cli, options_of_other_commands_are_refused_with_the_place_to_go) {
-  expect_error(run("audit a.glb --each"), 2, {"there is no option '--each' here; it belongs to compare\n"});
+  expect_error(run("audit a.glb --each"), 2, {"there is no option '--each' here; this option belongs to compare\n"});
   expect_error(run("bake a.glb --world -o b.glb"), 2,
                {"'--world' here; bake writes normals in the space of each mesh"});
   expect_error(run("bake --base a.obj b.obj"), 2,
@@ -702,7 +702,7 @@ TEST_F(Cli, convert_never_replaces_its_input) {
     const std::string mesh = read("f_1.obj"), array = read("all.npz");
     const ProcessResult result = run("convert --force " + std::string(arguments));
     EXPECT_EQ(result.exit_code, 2) << arguments << result.err;
-    EXPECT_NE(result.err.find("would overwrite the file of INPUT"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("would overwrite a file that is read (INPUT"), std::string::npos) << result.err;
     EXPECT_EQ(read("f_1.obj"), mesh);
     EXPECT_EQ(read("all.npz"), array);
   }

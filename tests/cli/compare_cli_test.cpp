@@ -242,7 +242,7 @@ TEST_F(CompareFigures, weightings_are_named_and_are_of_vertices) {
 TEST_F(CompareFigures, table_counts_shares_in_pairs_of_all_segments) {
   const std::string text = output("");
   for (const char* const line :
-       {"\nslerp: 1 of 6 faces in all segments (16.67 %) used another scheme, since this one is undefined there\n",
+       {"\nslerp: 1 of 6 faces in all segments (16.67 %) used another scheme, since slerp is undefined there\n",
         "\n6 samples were left out, since faces without area have no normal\n", "  16.5362  52.2333  180.0000  "})
     EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
   EXPECT_EQ(text.find("left out, since the scheme has no normal there"), std::string::npos) << text;

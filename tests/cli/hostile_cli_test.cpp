@@ -225,8 +225,8 @@ TEST_F(HostileCli, what_the_user_asks_for_is_announced_and_not_refused) {
   const std::string arguments = "sample --sample twist --times 0:0.00005:1 -o no/folder_%d.ply";
   const ProcessResult result = run(arguments);
   expect(result, 1,
-         {"chronormal sample: the result will have 1.8 GB, for 20,001 moments with 7,700 normals each; to make it "
-          "smaller, give fewer moments\n",
+         {"chronormal sample: the result will have 1.8 GB, for 20,001 moments with 7,700 normals each; to make the "
+          "result smaller, give fewer moments\n",
           "cannot be written to"});
   EXPECT_EQ(run(arguments + " --quiet").err.find("GB"), std::string::npos);
 }

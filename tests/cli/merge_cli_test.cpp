@@ -46,7 +46,8 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   const ProcessResult merged = run("merge audit1.json audit2.json audit3.json");
   EXPECT_EQ(merged.out, file("one_audit.json"));
   EXPECT_EQ(merged.exit_code, 4);
-  EXPECT_NE(merged.err.find("the result is not within the --tolerance with which the shards were made"),
+  EXPECT_NE(merged.err.find(
+                "the result is not within the --tolerance with which the shards were made; its JSON has the errors"),
             std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
   // The command `merge` recognises the format of a shard by its content, not by its name.

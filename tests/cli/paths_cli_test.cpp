@@ -81,7 +81,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   write_turn(0.3);
   const ProcessResult usual = run("inspect 'f*.obj' --path catmull-rom");
   EXPECT_NE(usual.err.find("catmull-rom paths: 4 segments cut into "), std::string::npos) << usual.err;
-  EXPECT_NE(usual.err.find("whose normals are within 0.01 degrees of those of the curves"), std::string::npos)
+  EXPECT_NE(usual.err.find("whose normals are within 0.01 degrees of the normals of the curves"), std::string::npos)
       << usual.err;
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("whose normals are within 0.5 degrees"),
             std::string::npos);
@@ -98,7 +98,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   EXPECT_EQ(run("query collapse 'f*.obj' --path catmull-rom:0.5 --json").exit_code, 0);
   EXPECT_LE(json("inspect 'f*.obj' --path catmull-rom --max-expansion 2 --json")["input"]["keyframes"], 9);
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom --max-expansion 2")
-                .err.find("(one face in one segment), normals may differ by more than"),
+                .err.find("(a case is one face in one segment), normals may differ by more than"),
             std::string::npos);
 }
 

@@ -189,7 +189,7 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("collapse a.obj b.obj -o table.txt", "must end in .npz");
   expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: this option is only for query facing");
   expect_misuse("facing a.obj b.obj", "--direction: the camera is missing");
-  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: the value must be X,Y,Z or");
+  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: the value must be three numbers X,Y,Z, or");
   expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
   expect_misuse("facing a.obj b.obj --direction 0,0,0",
                 "--direction: the direction must not be 0,0,0; give at least one number that is not 0");

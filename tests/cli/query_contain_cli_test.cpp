@@ -83,7 +83,7 @@ TEST_F(QueryContainCli, refusals_say_what_is_wrong) {
   expect("open.obj open2.obj --points rest.npy", 3,
          "face 0: the mesh is not closed, so points cannot be inside it; 3 edges have a face on one side only (fill "
          "such holes)");
-  expect("a.obj b.obj", 2, "--points: the points are missing; name a .npy file of points");
+  expect("a.obj b.obj", 2, "--points: the points are missing; name a .npy file of points with --points");
   expect("a.obj b.obj --points none.npy", 1, "none.npy: ");
   expect("a.obj b.obj --points a.obj", 3, "a.obj, header: this is not a NumPy array");
   folder_.write("flat.npy", NpyBytes({3}, std::vector<double>{1, 2, 3}).bytes());

@@ -369,7 +369,7 @@ TEST_F(SampleCli, a_scheme_is_written_in_every_format) {
 TEST_F(SampleCli, steps_say_how_far_they_drift) {
   const ProcessResult played = run("a.obj b.obj a.obj --elements faces --scheme linear --step 100:0 -o played.npy");
   EXPECT_EQ(played.exit_code, 0);
-  EXPECT_NE(played.err.find("scheme linear played step by step drifts from the curve by up to "), std::string::npos)
+  EXPECT_NE(played.err.find("scheme linear played step by step drifts from its curve by up to "), std::string::npos)
       << played.err;
   EXPECT_NE(played.err.find(" degrees, at face 1 and time "), std::string::npos) << played.err;
   const test::ArrayFile array = array_of("a.obj b.obj a.obj --scheme slerp --step 8 -q");
@@ -385,8 +385,8 @@ TEST_F(SampleCli, steps_say_how_far_they_drift) {
   EXPECT_EQ(shell(std::string(kProgram) + " merge 1.npy 2.npy -o merged.npy && cmp merged.npy all.npy"), 0);
 
   const std::string two = "a.obj b.obj -o - ";
-  expect_error(two + "--step 4", 2, "name one with --scheme");
-  expect_error(two + "--step 4 --scheme circle:timed", 2, "circle:timed cannot go step by step");
+  expect_error(two + "--step 4", 2, "name a scheme with --scheme");
+  expect_error(two + "--step 4 --scheme circle:timed", 2, "circle:timed cannot be played step by step");
   expect_error(two + "--step 0 --scheme linear", 2, "'0' must be N or N:M");
   expect_error(two + "--step 4:x --scheme linear", 2, "must be N or N:M");
   expect_error(two + "--step 1000000 --scheme linear", 2, "more than 1,000,000 moments");

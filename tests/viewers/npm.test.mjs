@@ -159,7 +159,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
       ++read;
       assert.deepEqual(found, { ...expected, input: { ...expected.input, name: /^(-|\[.*\])$/s.test(name) ? `./${name}` : name } });
     } else {
-      assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: this cannot be the name of a file` });
+      assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: this text cannot be the name of a file; give another name` });
     }
     if (i % 6 === 0) assert.deepEqual(await outcomeOf(inspect(tiny, { name })), found, said);
   }
@@ -172,7 +172,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   for (const worker of [true, false]) {
     assert.deepEqual(await outcomeOf(inspect(tiny, { resources: { '..': tiny }, worker })),
-      { name: 'ChronormalError', code: 2, message: '"..": this cannot be the name of a file' });
+      { name: 'ChronormalError', code: 2, message: '"..": this text cannot be the name of a file; give another name' });
     await assert.rejects(inspect(tiny, { name: 5, worker }), { name: 'TypeError', message: /^name: / });
   }
 });
@@ -296,7 +296,7 @@ test('require() loads the package, or says how it is loaded', () => {
     const has = process.features.require_module;
     if (has) assert.equal(node(['--no-warnings', '-e', script]).stdout, 'object\n');
     const { stdout } = node([...(has ? ['--no-experimental-require-module'] : []), '-e', script]);
-    assert.equal(stdout, `chronormal is a package of ES modules, which require() loads from Node.js 20.19 and 22.12 on; this is ${process.versions.node}. \
+    assert.equal(stdout, `chronormal is a package of ES modules, which require() loads from Node.js 20.19 and 22.12 on; this Node.js is ${process.versions.node}. \
 Use import { bake } from 'chronormal' in a module, or const { bake } = await import('chronormal') anywhere\n`);
     const meanwhile = node([...(has ? ['--no-experimental-require-module'] : []), '-e', `import('chronormal${part}').then((api) => console.log(typeof api))`]);
     assert.equal(meanwhile.stdout, 'object\n', meanwhile.stderr);

@@ -142,7 +142,7 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
   assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
 });
 
-const DAMAGED = /^The data of this page (are damaged|are cut off|are not a report|have version)/;
+const DAMAGED = /^The data of this page (are damaged|are cut off|are not the data of a report|have version)/;
 
 // Returns {begin, size, count} for each array of floating-point numbers in the data of a report (the container).
 // `begin` and `size` are in bytes.

@@ -14,7 +14,7 @@ const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(v
  * @returns {object} its JSON, in which each {offset, type, count} below "parts" is replaced by a typed array
  */
 export function readContainer(bytes) {
-  if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('The data of this page are not a report. Make the page again with chronormal report.');
+  if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('The data of this page are not the data of a report. Make the page again with chronormal report.');
   const buffer = bytes.byteOffset % 8 === 0 ? bytes.buffer : bytes.slice().buffer;
   const start = buffer === bytes.buffer ? bytes.byteOffset : 0;
   const view = new DataView(buffer, start, bytes.length);

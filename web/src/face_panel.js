@@ -163,7 +163,7 @@ export function makeFacePanel(report, player, view, compute) {
     rows.replaceChildren(table('the schemes on this face', ['scheme', 'q ', 'at t ', 'length '], figure.schemes.map((one) => ({
       'data-scheme': one.scheme, 'data-sum': one.sum_degrees,
       cells: [tick(one.scheme), `${one.sum_degrees.toFixed(one.sum_degrees < 10 ? 2 : 1)}°`, degreesText(one.degrees[sample] ?? NaN), one.lengths ? one.lengths[sample].toFixed(3) : '1'],
-    }))), h('p', { className: 'note' }, `q is the sum of the angles at ${figure.t.length} samples, as in the paper. The program computed all numbers.`));
+    }))), h('p', { className: 'note' }, `q is the sum of the angles to the exact normal at ${figure.t.length} moments, as in the paper. The program computed all numbers.`));
     if (focused >= 0) rows.querySelectorAll('input')[focused]?.focus();
   }
   const swatch = ({ colour, dashes }) => s('svg', { viewBox: '0 0 30 8', class: 'swatch' }, s('line', { x1: 0, x2: 30, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.5, 'stroke-dasharray': dashes }));

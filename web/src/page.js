@@ -93,7 +93,7 @@ async function read(file, bytes) {
     bytes[file.name] = new Uint8Array(await file.arrayBuffer());
     return undefined;
   } catch {
-    return `“${file.name}” could not be read. Perhaps it was moved, or is a folder. Choose the file again.`;
+    return `“${file.name}” could not be read. Perhaps the file was moved, or is a folder. Choose the file again.`;
   }
 }
 
@@ -109,7 +109,7 @@ async function load({ args, files }, bytes) {
 }
 
 async function add(list) {
-  if (abort) return say('The page is still working. Wait until it is done, or click Cancel.');
+  if (abort) return say('The page is still working. Wait until the work is done, or click Cancel.');
   say();
   const faults = [];
   for (const input of inputsOf(list)) {
@@ -184,7 +184,7 @@ async function make(input) {
   if (!found) return;
   input.baked = found;
   show(input, 'baked');
-  const text = found.within ? 'The file is baked, with these notes.' : 'The file is baked, but its errors exceed your tolerance. Accept a larger error, or allow more targets or bytes.';
+  const text = found.within ? 'The file is baked, with these notes.' : 'The file is baked, but its errors are larger than your tolerance. Accept a larger error, or allow more targets or bytes.';
   if (found.warnings) remark(text, found.warnings);
 }
 

@@ -151,7 +151,7 @@ export const notes = ({ thinned }) =>
 export function verdict({ audit }) {
   if (!audit) return '';
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
-  if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets.';
+  if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets, so there is nothing to judge.';
   if (audit.cancelled > 0 && worst < 0.5) {
     return `At some moment, the normals of the faces around ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel each other, so no normal is right there. All others are right within ${degreesText(worst)}.`;
   }

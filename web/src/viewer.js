@@ -9,8 +9,8 @@ import { makePlot } from './plot.js';
 import { makeView } from './view.js';
 
 const KEYS = [
-  ['Space', 'play, pause'], ['← →', 'go one moment back or on, or ten with Shift'], ['1 2 3', 'show the lit mesh, normals as colours, or the error'],
-  ['W', 'show two pictures side by side, or as a wipe'], ['N P', 'go to the next or previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
+  ['Space', 'play or pause the motion'], ['← →', 'go one moment back or on, or ten with Shift'], ['1 2 3', 'show the lit mesh, normals as colours, or the error'],
+  ['W', 'show two pictures side by side, or as a wipe'], ['N P', 'go to the next or previous of the worst places'], ['F', 'show the whole mesh'], ['D', 'change between dark and light'], ['?', 'show these keys'],
 ];
 
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
@@ -57,7 +57,7 @@ export function makeViewer(root, report, compute) {
   const stops = shownPlaces(report).length, next = () => visit((visited + 1) % stops), previous = () => visit((visited <= 0 ? stops : visited) - 1);
   const help = h('dialog', { className: 'help' }, h('h2', {}, 'Keys'),
     h('dl', {}, KEYS.map(([key, what]) => [h('dt', {}, key), h('dd', {}, what)])),
-    h('p', {}, 'Drag to turn, pinch or scroll to come nearer, two fingers or the right button to move. What is under the pointer is named with its error.'),
+    h('p', {}, 'Drag to turn the mesh, pinch or scroll to come nearer, and drag with two fingers or the right button to move the mesh. The vertex under the pointer is named with its error.'),
     h('form', { method: 'dialog' }, h('button', { className: 'plain' }, 'Close')));
   stage.append(tip);
   root.classList.add('viewer');

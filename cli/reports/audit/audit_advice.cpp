@@ -132,16 +132,20 @@ std::string original_words(const Audited& input) {
     return baked +
            "for smaller errors, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
   if (any_harmless)
-    return baked + "errors of targets that no animation moves remain, since only animations drive correction targets";
+    return baked +
+           "bake cannot make errors of targets that no animation moves smaller, since only animations drive correction "
+           "targets";
   if (!all_single && all_fitted)
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
   if (!all_single)
-    return baked + "they have changed since that bake, or --weighting differs; bake the ORIGINAL file again";
+    return baked + "the meshes have changed since that bake, or --weighting differs; bake the ORIGINAL file again";
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
-  return baked + "errors of targets that no animation moves remain, since only animations drive correction targets";
+  return baked +
+         "bake cannot make errors of targets that no animation moves smaller, since only animations drive correction "
+         "targets";
 }
 
 }  // namespace
@@ -150,7 +154,7 @@ std::string advice(const Audited& input) {
   if (input.audit.subjects.empty()) return "";
   switch (remedy_of(input)) {
     case Remedy::kNone:
-      return formatted("\nnothing to do, since no error is larger than {}\n",
+      return formatted("\nthere is nothing to do, since no error is larger than {}\n",
                        with_degrees(with_digits(limit_of(input), 6)));
     case Remedy::kUnknown:
       return input.audit.error.cancelled > 0 ? "\nat some vertices the normals of the faces cancel each other, so no "
@@ -160,12 +164,13 @@ std::string advice(const Audited& input) {
     case Remedy::kTangents:
       if (!can_bake_tangents(input)) {
         return "\nthe normals are right, but the tangents are not; export tangents for all targets, or for none, so "
-               "that viewers\ncompute them\n";
+               "that viewers\ncompute tangents\n";
       }
       return formatted("\nchronormal bake {} -o baked.glb computes new tangents; the normals are right\n", input.bake);
     case Remedy::kViewers:
       return formatted(
-          "\nthe normals are right in viewers that add up targets as glTF says; these viewers do not: {}\n",
+          "\nthe normals are right in viewers that add up targets as glTF says, but not in {};\nto correct the file "
+          "for such a viewer, bake the original file with --for\n",
           wrong_viewers(input));
     case Remedy::kRule:
       return formatted("\nviewers do not render glTF files by the rule {}; leave --rule out to see what bake can do\n",
@@ -173,7 +178,8 @@ std::string advice(const Audited& input) {
     case Remedy::kOriginal:
       return '\n' + original_words(input) + '\n';
     case Remedy::kTargets:
-      return "\nto correct them, write the targets as a .glb with chronormal convert, and bake that file\n";
+      return "\nto correct these normals, write the base and its targets as a .glb with chronormal convert, and bake "
+             "that file\n";
     case Remedy::kBake:
       return formatted("\nchronormal bake {} -o baked.glb {}\n", input.bake, outcome(input));
   }

@@ -109,17 +109,18 @@ std::string group_words(const Audited& input, const Group& group) {
                        who, worst);
     }
     case Kind::kWrongPose:
-      return found.node ? formatted("{}: errors of up to {} degrees in the pose in which the file opens",
-                                    of_mesh(input, found), worst)
-                        : formatted("{}: errors of up to {} degrees in the poses", of_mesh(input, found), worst);
+      return found.node
+                 ? formatted("{}: errors of up to {} degrees in the pose in which the file opens",
+                             of_mesh(input, found), worst)
+                 : formatted("{}: errors of up to {} degrees in the poses of --poses", of_mesh(input, found), worst);
     case Kind::kStaleKeys:
       return formatted(
           "{}: stored normals do not turn with the surface ({}), so true normals are computed as for the base", who,
           counted(group.count, "vertex", "vertices"));
     case Kind::kUnknownRule:
       return formatted(
-          "{}: its normals follow no known weighting, so area weights are used; other weights would change "
-          "true normals by {} degrees (median)",
+          "{}: its normals follow no known weighting, so area weights are used; another --weighting would change true "
+          "normals by {} degrees (median)",
           of_mesh(input, found), degrees(found.degrees));
     case Kind::kStaleTangents:
       return formatted("{}: {} up to {} degrees away from a right angle to the true normal", who,
@@ -165,7 +166,9 @@ std::string lines_of(const Audited& input, bool faults) {
     text += '\n';
   }
   if (groups.size() > kMostAuditRows)
-    text += formatted("  ... and {} more{} (--json has all)\n", grouped(groups.size() - kMostAuditRows),
+    text += formatted("  ... and {}{} (--json has all)\n",
+                      counted(groups.size() - kMostAuditRows, faults ? "more fault" : "more note",
+                              faults ? "more faults" : "more notes"),
                       faults ? ", with smaller errors" : "");
   if (text.empty()) return text;
   return (faults ? "\nFaults:\n" : "\nNotes:\n") + text;

@@ -65,7 +65,7 @@ std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = heading(printable(input.name())) + ": ";
   if (audit.subjects.empty())
-    return text + "there is nothing to judge, since no target and no animation moves stored normals\n";
+    return text + "there is nothing to judge, since no morph target and no animation moves stored normals\n";
   text += formatted("errors of {} degrees on average, {} at worst", degrees(audit.error.mean()),
                     judged_degrees(audit.error.worst));
   if (audit.error.samples > 0)
@@ -99,8 +99,7 @@ std::string headline(const Audited& input) {
   if (audit.error.unlit > 0)
     text += formatted(
         "  the normals of {} would be zero, infinite or NaN in a viewer, and count as errors of 180 degrees. The first "
-        "is "
-        "at {}\n",
+        "is at {}\n",
         samples(audit.error.unlit), unlit_label(input));
   return text;
 }
@@ -140,8 +139,8 @@ std::string subject_table(const Audited& input) {
   }
   std::string text = table.text();
   if (subjects.size() > kMostAuditRows)
-    text +=
-        formatted("... and {} more with smaller errors (--json has all)\n", grouped(subjects.size() - kMostAuditRows));
+    text += formatted("... and {} with smaller errors (--json has all)\n",
+                      counted(subjects.size() - kMostAuditRows, "more motion", "more motions"));
   return text;
 }
 
@@ -224,7 +223,7 @@ std::string offset_lines(const Audited& input) {
     else
       ++more;
   }
-  if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
+  if (more > 0) text += formatted("  ... and {} (--json has all)\n", counted(more, "more mesh", "more meshes"));
   return text.empty()
              ? text
              : "\nDifference between your normals at rest and smooth ones (intended by authors, and no error):\n" +
