@@ -68,7 +68,7 @@ def before_export(export_settings: dict[str, Any]) -> None:
     module = writer()
     if module is None:
         say("WARNING", "Normals were not corrected: the add-on does not know this version of the glTF exporter. Your plain "
-                       "export was kept; correct it with the program: chronormal bake FILE")
+                       "export was kept; correct the file with the program: chronormal bake FILE -o RESULT")
         return
     original = getattr(module, _WRITE)
 
@@ -134,7 +134,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     try:
         program.find(settings.program_path())
         reason = "" if writer() else ("The add-on does not know this version of the glTF exporter. Correct exported files "
-                                      "with the program: chronormal bake FILE")
+                                      "with the program: chronormal bake FILE -o RESULT")
     except program.Unavailable as error:
         reason = str(error)
     if reason:

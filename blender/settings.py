@@ -40,12 +40,14 @@ class Preferences(bpy.types.AddonPreferences):
     )
     tolerance: bpy.props.FloatProperty(
         name="Tolerance",
-        description="The largest error allowed, in degrees. At 0, errors get as small as a file of at most 2.5 times the size permits",
+        description="The largest error allowed, in degrees. At 0, errors get as small as possible "
+                    "in a file of at most 2.5 times the size",
         min=0, max=180, soft_max=5, precision=2, default=0,
     )
     most_targets: bpy.props.IntProperty(
         name="Most targets",
-        description="The most morph targets that a mesh may have, shape keys included. At 0 it may have as many as the viewers can show",
+        description="The most morph targets that a mesh may have, shape keys included. At 0, a mesh may have as many "
+                    "as the viewers can show",
         min=0, soft_max=64, default=0,
     )
     most_kilobytes: bpy.props.IntProperty(

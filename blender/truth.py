@@ -128,7 +128,8 @@ class Subject:
             with bpy.context.temp_override(scene=self.scene, view_layer=self.layer):
                 bpy.ops.export_scene.gltf(filepath=str(path), **options)
         except RuntimeError as error:
-            raise Refused(f"The exporter failed: {str(error).strip().splitlines()[-1]}") from error
+            raise Refused(f"The exporter failed: {str(error).strip().splitlines()[-1]}. Export the object with File > Export "
+                          "to see all messages.") from error
         finally:
             export.is_paused = False
         return path
@@ -156,7 +157,8 @@ class Subject:
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")
         counts = numpy.searchsorted(of_file[order], of_corners, side="right") - begins
         if (counts == 0).any():
-            raise Refused("The exported file has vertices at other places than the mesh, so their normals cannot be compared.")
+            raise Refused("The exported file has vertices at other places than the mesh, so their normals cannot be compared. "
+                          "Please report this problem of the add-on.")
         first = numpy.concatenate([[0], numpy.cumsum(counts)])
         corner = numpy.repeat(numpy.arange(len(of_corners)), counts)
         vertex = order[numpy.arange(first[-1]) - numpy.repeat(first[:-1] - begins, counts)]

@@ -431,7 +431,7 @@ Command audit_command() {
           "  chronormal audit models/ intro.glb --tolerance 1\n"
           "  chronormal audit face.glb --for three,godot,gltfpack\n"
           "  chronormal audit walk/ --rule slerp --json\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 a limit was exceeded",
+          "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input, 4 a limit was exceeded",
           [options] { return run(*options); },
           kRefusedByAudit,
           true};

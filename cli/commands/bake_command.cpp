@@ -525,8 +525,8 @@ Command bake_command() {
       "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
       "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
       "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but beyond --tolerance, --max-targets\nor "
-      "--max-bytes",
+      "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input, 4 written, but beyond --tolerance,\n"
+      "--max-targets or --max-bytes",
       [options] { return run(*options); },
       refused};
 }

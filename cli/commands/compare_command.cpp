@@ -101,7 +101,7 @@ std::string compare_footer() {
          "  chronormal compare face.glb --blend 100\n"
          "  chronormal compare walk/ --truth 2\n"
          "  chronormal compare a.obj b.obj --face 12 --schemes linear,quaternion:matrix\n"
-         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
+         "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input, 4 no scheme is within the tolerance";
 }
 
 std::vector<std::vector<Option>> tables(CompareArguments& options) {

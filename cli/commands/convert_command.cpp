@@ -37,7 +37,7 @@ std::string convert_footer() {
          "  chronormal convert body.obj walk.pc2 -o walk.npz\n"
          "  chronormal convert face.glb --animation Smile -o smile.npz\n"
          "  chronormal convert --base face.obj targets/ -o face.glb\n"
-         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+         "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input";
 }
 
 Result<int> run(const ConvertArguments& options) {

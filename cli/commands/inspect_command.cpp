@@ -61,7 +61,7 @@ Command inspect_command() {
           "  chronormal inspect head.glb\n"
           "  chronormal inspect walk/ --json\n"
           "  chronormal inspect --base face.obj targets/\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+          "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input",
           [options] { return run(*options); }};
 }
 

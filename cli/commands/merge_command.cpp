@@ -62,7 +62,7 @@ Command merge_command() {
           "\nExamples:\n"
           "  for i in 1 2 3; do chronormal compare walk/ --shard $i/3 -o part_$i.json; done\n"
           "  chronormal merge part_1.json part_2.json part_3.json -o walk.json\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance of the shards was exceeded",
+          "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input, 4 the tolerance of the shards was exceeded",
           [options] { return run(*options); }};
 }
 

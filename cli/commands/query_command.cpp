@@ -138,7 +138,7 @@ std::string footer(const std::vector<Question>& questions) {
          "  chronormal query collapse walk/ --from 1 --to 2.5 --json\n"
          "  chronormal query collapse body.obj walk.pc2 -o collapses.npz\n"
          "  chronormal query contain balloon.glb --points dust.npy -o crossings.npz\n"
-         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+         "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input";
 }
 
 }  // namespace

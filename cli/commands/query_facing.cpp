@@ -30,7 +30,7 @@ Result<std::vector<double>> parse_numbers(const std::string& option, std::string
     const auto [end, code] = from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || code != std::errc{} || end != word.data() + word.size() ||
         !std::isfinite(static_cast<float>(value)))
-      return misuse(option, formatted("'{}' is not a number", word));
+      return misuse(option, formatted("'{}' is not a number of float32; give numbers such as 4,-5,2", word));
     values.push_back(value);
     if (word.size() == list.size()) return values;
     list.remove_prefix(word.size() + 1);

@@ -145,7 +145,7 @@ Command report_command() {
       "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"
       "  chronormal report walk/ -o walk.html\n"
       "  chronormal report --base face.obj smile.obj frown.obj -o face.html\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",
+      "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input",
       [options] { return run(*options); },
       refused};
 }

@@ -51,7 +51,7 @@ std::string sample_footer() {
          "  chronormal sample walk/ --scheme quaternion:matrix --elements faces --times 0:0.1:12 -o matrix.npz\n"
          "  chronormal sample walk/ --scheme quadratic --step 100 -o played.npy\n"
          "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
-         "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
+         "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input";
 }
 
 std::vector<std::vector<Option>> tables(SampleArguments& options) {

@@ -241,7 +241,10 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   const std::vector<std::string> notes = input.value().notes();
   for (std::size_t i = 0; i < std::min(notes.size(), kMostSaid); ++i) say(command, notes[i], Tone::kWarning);
   if (notes.size() > kMostSaid)
-    say(command, counted(notes.size() - kMostSaid, "more note was", "more notes were") + " left out", Tone::kWarning);
+    say(command,
+        counted(notes.size() - kMostSaid, "more note was", "more notes were") +
+            " left out; chronormal inspect lists all notes",
+        Tone::kWarning);
   if (fault) return *fault;
   if (options.is_curved() || input.value().cut_path().skins)
     say_of_curves(command, input.value().cut_path(), faces, progress.is_quiet());

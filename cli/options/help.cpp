@@ -314,7 +314,7 @@ std::string manual_page(const std::vector<Command>& commands) {
   page += ".SH OPTIONS\n";
   for (const auto& [names, text] : kOptionsOfProgram)
     page += formatted(".TP\n.B {}\n{}", for_manual(names), lines_for_manual(text));
-  return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 usage, 3 input invalid, 4 a limit was exceeded\n";
+  return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 wrong usage, 3 invalid input, 4 a limit was exceeded\n";
 }
 
 Result<std::string> completions(const std::vector<Command>& commands, std::string_view shell) {

@@ -41,7 +41,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   double value = 0;
   const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
   if (digits.empty() || code != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    return misuse(option, formatted("'{}' is not a number", word));
+    return misuse(option, formatted("'{}' is not a number; give a number such as 0.5", word));
   return value;
 }
 
@@ -82,7 +82,7 @@ Result<std::vector<double>> parse_times(const std::string& list) {
     if (!time) return time.error();
     times.push_back(time.value());
   }
-  if (times.size() > kMostTimes) return misuse("--times", "the list has more than 1,000,000 times; take a larger step");
+  if (times.size() > kMostTimes) return misuse("--times", "the list has more than 1,000,000 times; give fewer times");
   return times;
 }
 
@@ -134,7 +134,7 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
       part.remove_prefix(equals + 1);
     }
     const Result<double> weight = parse_number("--weights", part);
-    if (!weight) return misuse("--weights", weight.error().message + (name ? "" : " or NAME=WEIGHT"));
+    if (!weight) return misuse("--weights", weight.error().message + (name ? "" : ", or NAME=WEIGHT"));
     if (name)
       pose.named.emplace_back(*name, weight.value());
     else

@@ -58,7 +58,7 @@ std::string fault_of_number(const T*, const std::string& value) {
   if constexpr (is_text) return "";
   double number = 0;
   const bool is_number = CLI::detail::lexical_cast(value, number) && std::isfinite(number);
-  return is_number ? "" : formatted("'{}' is not a number", printable(value));
+  return is_number ? "" : formatted("'{}' is not a number; give a number such as 0.5", printable(value));
 }
 
 void add_option(const Option& option, CLI::App& command) {

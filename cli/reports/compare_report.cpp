@@ -80,7 +80,7 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
     text += formatted("{}the cheapest scheme that is always within {} is {}, with an error of at most {}\n", prefix,
                       with_degrees(with_digits(*comparison.tolerance, 6)), row.scheme,
-                      rounded_up(in_degrees(row.certified->upper)));
+                      with_degrees(rounded_up(in_degrees(row.certified->upper))));
   } else if (comparison.tolerance) {
     text += formatted("{}no scheme is always within {}\n", prefix, with_degrees(with_digits(*comparison.tolerance, 6)));
   }

@@ -58,7 +58,7 @@ std::string truth_table(const NamedTruthComparison& input) {
   std::string text =
       formatted("{}: {}, {}; {} kept and compared with the {} left out\n", heading(printable(input.name)),
                 counted(c.vertices, "vertex", "vertices"), counted(c.faces, "face", "faces"),
-                counted(c.kept, "keyframe", "keyframes"), counted(c.left_out, "that was", "that were"));
+                counted(c.kept, "keyframe was", "keyframes were"), counted(c.left_out, "that was", "that were"));
   if (c.kind != ElementKind::kFaces)
     text += formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
                       element_kind_name(c.kind));

@@ -126,11 +126,11 @@ def _file(name, place):
     try:
         name = _os.fsencode(name)
     except UnicodeEncodeError:
-        raise ValueError(f"{place}: {name!r} cannot be the name of a file") from None
+        raise ValueError(f"{place}: {name!r} cannot be the name of a file, since some characters cannot be encoded") from None
     except TypeError:
         raise TypeError(f"{place}: the value must be the name of a file, not {type(name).__name__}") from None
     if b"\0" in name:
-        raise ValueError(f"{place}: {_os.fsdecode(name)!r} cannot be the name of a file")
+        raise ValueError(f"{place}: {_os.fsdecode(name)!r} cannot be the name of a file, since the name contains a zero byte")
     return name
 
 

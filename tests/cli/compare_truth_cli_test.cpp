@@ -60,7 +60,7 @@ TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
   EXPECT_EQ(json["left_out_keyframes"], 4);
   EXPECT_NEAR(json["bend"], std::sin(0.2), 1e-5);
   EXPECT_EQ(json["is_too_sparse"], false);
-  EXPECT_NE(table.out.find("5 keyframes kept and compared with the 4 that were left out"), std::string::npos)
+  EXPECT_NE(table.out.find("5 keyframes were kept and compared with the 4 that were left out"), std::string::npos)
       << table.out;
   std::istringstream lines(csv.out);
   std::string line;

@@ -208,7 +208,7 @@ TEST_F(SampleCli, weights_are_given_by_the_names_of_targets) {
   refused("2=1", "there is no target '2'; the targets are 0 (jawOpen)");
   refused("jawOpen=1,0=2", "target 0 (jawOpen) has two weights");
   refused("jawOpen=1,2", "'jawOpen=1,2' mixes numbers with NAME=WEIGHT");
-  refused("jawOpen", "'jawOpen' is not a number or NAME=WEIGHT");
+  refused("jawOpen", "'jawOpen' is not a number; give a number such as 0.5, or NAME=WEIGHT");
   refused("jawOpen=", "'' is not a number");
   refused("'\"jawOpen=1'", "a closing quote is missing in '\"jawOpen=1'");
   refused("'\"jawOpen\",1'", "target 'jawOpen' has no weight; write \"jawOpen\"=WEIGHT");

@@ -50,5 +50,5 @@ function comparison({ came, baked }) {
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });
   const bytes = Object.values(baked.files).reduce((sum, file) => sum + file.length, 0);
   return [table('Before and after', ['', 'average ', 'worst '], [row('as it came', came), row('baked', baked.report)]),
-    h('p', { className: 'note' }, `${baked.name}: ${bytes.toLocaleString('en')} bytes.`)];
+    h('p', { className: 'note' }, `${baked.name} has ${bytes.toLocaleString('en')} bytes.`)];
 }

@@ -42,7 +42,7 @@ export function makeEngine(element, workerSource) {
         else if (result) end(resolve, result);
         else end(reject, new EngineError(1, failed));
       };
-      worker.onerror = (event) => end(reject, new EngineError(1, event.message ?? 'the program could not be started in this browser; use a newer one'));
+      worker.onerror = (event) => end(reject, new EngineError(1, event.message ?? 'the program could not be started in this browser; use a newer browser'));
       signal.addEventListener('abort', stop, { once: true });
       worker.postMessage({ task: { args, files, outputs: OUTPUTS }, wantsProgress: true, module: compiled });
     });

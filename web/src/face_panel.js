@@ -68,7 +68,7 @@ export function makeFacePanel(report, player, view, compute) {
   // Shows a face. The figure of the face comes from the program, or else from the report.
   function choose(found) {
     if (!found) {
-      words.textContent = `There is no such face; the last number is ${(player.part.faces?.at(-1) ?? player.part.triangles.length / 3 - 1).toLocaleString('en')}.`;
+      words.textContent = `There is no such face; the last face has the number ${(player.part.faces?.at(-1) ?? player.part.triangles.length / 3 - 1).toLocaleString('en')}. Type another number.`;
       return;
     }
     face = found;

@@ -44,12 +44,12 @@ export function faultOf(name, size, bytes) {
   if (!bytes) return undefined;
   const kind = KINDS.find(([magic]) => starts(bytes, magic));
   if (kind) return `“${name}” is ${kind[1]}, not a 3D model that can be read here. ${EXPORT}`;
-  if (starts(bytes, 'PK') && !/\.npz$/i.test(name)) return `“${name}” is an archive (zip). Unpack it, and drop the model that is in it.`;
+  if (starts(bytes, 'PK') && !/\.npz$/i.test(name)) return `“${name}” is an archive (zip). Unpack the archive, and drop the model that is inside.`;
   if (starts(bytes, 'glTF') && bytes.length >= 12) {
     const said = new DataView(bytes.buffer, bytes.byteOffset).getUint32(8, true);
     if (said > size) {
       return `“${name}” is cut off: it should have ${said.toLocaleString('en')} bytes, and only ${size.toLocaleString('en')} are there. ` +
-        'Copy or download it again; if that does not help, export it again.';
+        'Copy or download the file again; if that does not help, export the model again.';
     }
   }
   return undefined;

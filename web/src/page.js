@@ -72,7 +72,7 @@ async function during(title, step) {
 }
 
 const TOO_LARGE = 'The browser does not have enough memory for this file. Close other pages, or use the chronormal program on your computer.';
-const UNUSABLE = 'This file cannot be used. The message below says where it is wrong; exporting the model again often helps.';
+const UNUSABLE = 'This file cannot be used. The message below says where the file is wrong; exporting the model again often helps.';
 
 function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);

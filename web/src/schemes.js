@@ -100,10 +100,10 @@ export const SCHEMES = {
   linear: { ...lagrange(1), title: 'linear: between the normals of the keyframes, then normalised' },
   slerp: { ...slerp, title: 'slerp: along the great circle' },
   quadratic: { ...lagrange(2), title: 'quadratic: a parabola through 3 exact normals' },
-  cubic: { ...lagrange(3), title: 'cubic: through 4 exact normals' },
+  cubic: { ...lagrange(3), title: 'cubic: a cubic curve through 4 exact normals' },
   'decasteljau:4': { ...deCasteljau(4), title: 'decasteljau:4: a spherical curve of 4 exact normals' },
   circle: { ...circle(false), title: 'circle: the circle through 3 exact normals' },
-  'circle:timed': { ...circle(true), title: 'circle:timed: the same, with the middle normal at t = 1/2' },
+  'circle:timed': { ...circle(true), title: 'circle:timed: the circle through 3 exact normals, with the middle normal at t = 1/2' },
   polynomial: { ...polynomial, title: 'polynomial: the exact normals, from three control normals' },
 };
 
