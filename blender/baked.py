@@ -103,7 +103,7 @@ class RecogniseBakedFiles:
         if meshes:
             what = "1 mesh was" if meshes == 1 else f"{meshes} meshes were"
             say("INFO", f"{what} baked by chronormal. The correction keys ({count}) are muted and named \"{IDLE} ...\": export with "
-                        "Right normals for shape keys to bake the author's keys again.")
+                        "the option Right normals for shape keys to bake the author's keys again.")
 
 
 class CHRONORMAL_OT_make_idle(bpy.types.Operator):

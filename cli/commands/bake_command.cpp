@@ -76,7 +76,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     how.weighting = weighting.value();
   }
   if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
-    return misuse("--crease", "the angle must be from 0 to 180 degrees");
+    return misuse("--crease", "the angle of hard edges must be from 0 to 180 degrees");
   if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
     return misuse("--tolerance", "the tolerance must be an angle from 0 to 90 degrees");
   how.crease_angle = options.crease_angle;
@@ -290,9 +290,12 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (!how.encoding && !options.viewers.empty() && options.viewers != "all" && !adds_up)
     how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
-    return misuse("--encode", "the encoding of a sequence must be harmless, exact, endpoint or keys");
+    return misuse(
+        "--encode",
+        "the encoding of a sequence must be harmless, exact, endpoint or keys; give one of these with --encode");
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
-    return misuse("--tolerance", "the tolerance must be at least 0.001 degrees with --encode keys");
+    return misuse("--tolerance",
+                  "with --encode keys, the tolerance must be at least 0.001 degrees; give a larger --tolerance");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
     // The user's tolerance limits the error against the curves. Cutting the curves into straight pieces uses up a part
     // of this tolerance.
@@ -505,8 +508,8 @@ Command bake_command() {
          "that turn no normal by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
         {"--drivers FILE",
          &options->drivers,
-         "also write to FILE, as JSON, how a program drives the correction targets\nThe extras in the result say the "
-         "same",
+         "also write to FILE, as JSON, how a program drives the correction targets\nThe extras of the meshes in the "
+         "result say the same",
          {.rare = true}},
         {"--no-weld",
          &options->no_weld,

@@ -156,13 +156,19 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
       options.run.options("compare only share I of N equal shares of the segments\nI is a number from 1 to N. OUT "
                           "becomes a shard, and chronormal merge puts the shards of all N runs together"),
       {{"--json", &options.json, "print the result as JSON, for programs"},
-       {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
+       {"--csv",
+        &options.csv,
+        "print the result as comma-separated values, with a line for each scheme",
+        {.excludes = "--json"}},
        {"--table KIND",
         &options.table,
         "print another kind of table\nKIND is text (default), operations, which adds the cost of an evaluation, or "
         "latex, which has both tables of the paper for your meshes",
         {.excludes = "--json", .check = check_table, .rare = true}},
-       {"--no-times", &options.no_times, "leave measured times out, so that each run prints the same", {.rare = true}}},
+       {"--no-times",
+        &options.no_times,
+        "leave measured times out, so that each run prints the same text",
+        {.rare = true}}},
       options.common.table(false)};
 }
 
@@ -404,7 +410,8 @@ Result<int> run(const CompareArguments& options) {
                   "errors can only be bounded for random access; leave this option or --access out");
   if (const Status output = options.run.check_output(options.common); !output) return output.error();
 
-  if (options.run.shard && options.each) return misuse("--shard", "--shard divides a single motion; leave --each out");
+  if (options.run.shard && options.each)
+    return misuse("--shard", "--shard divides the work on a single motion; leave --each or --shard out");
   if (options.run.shard && options.errors)
     return misuse("--errors", "--errors and --shard cannot be used together; leave one of the two out");
   if (options.run.shard && (options.json || options.csv))

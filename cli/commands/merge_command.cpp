@@ -55,7 +55,7 @@ Command merge_command() {
   auto options = std::make_shared<MergeArguments>();
   return {"merge",
           "Put the shards of compare, audit or sample together",
-          {{{"PART", &options->parts, "the shards that compare, audit or sample wrote, in any order"}},
+          {{{"PART", &options->parts, "read these shards, which compare, audit or sample wrote, in any order"}},
            options->common.table(false)},
           "The result has the bytes that a single run would have written: the JSON of compare --json --no-times "
           "or\naudit --json, or the array of sample.\n"

@@ -52,7 +52,7 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const bool is_reversed = fit.direction < 0 && fit.length > 0;
   warn(is_reversed
            ? std::string("the velocities point against the motion of the vertices, so that hermite paths swing back "
-                         "and forth; check whether they are reversed, or give more keyframes")
+                         "and forth; check whether the velocities are reversed, or give more keyframes")
            : formatted("the velocities do not fit the motion, since vertices would go {:.3g} times as far as they do; "
                        "velocities are per second, so check --fps, without which keyframes are one second apart",
                        fit.length));
@@ -97,7 +97,7 @@ Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_we
     to_weighting = found.value();
   }
   if (!viewers_by_old_name.empty() && !viewers.empty())
-    return misuse("--host", "--host is the old name of --for; give only --for");
+    return misuse("--host", "--host is the old name of --for; leave --host out");
   if (!viewers_by_old_name.empty())
     say(command, "--host is now called --for; use --for, since the next version will not know --host", Tone::kWarning);
   const std::string& named = viewers.empty() ? viewers_by_old_name : viewers;
@@ -211,7 +211,8 @@ std::vector<Option> ElementArguments::table() {
 Result<ElementOptions> ElementArguments::options() const {
   const auto found = make_element_kind(kind());
   if (!found) return misuse("--elements", found.error().message);
-  if (!(crease_angle >= 0 && crease_angle <= 180)) return misuse("--crease", "the angle must be from 0 to 180 degrees");
+  if (!(crease_angle >= 0 && crease_angle <= 180))
+    return misuse("--crease", "the angle of hard edges must be from 0 to 180 degrees");
   if (crease_angle != 180 && found.value() != ElementKind::kCorners)
     return misuse("--crease", "only corners can have hard edges; add --elements corners");
   if (no_weld && found.value() == ElementKind::kFaces)

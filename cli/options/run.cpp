@@ -82,7 +82,7 @@ std::string difference(const Json& old, const Json& now) {
 
 Error of_another_run(const std::string& path, const std::string& what) {
   return misuse(path, formatted("this journal belongs to another run ({}); repeat that run, or remove the journal to "
-                                "start from the beginning",
+                                "start this run from the beginning",
                                 what));
 }
 

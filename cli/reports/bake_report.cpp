@@ -258,7 +258,7 @@ std::string left_over(const GltfBake& bake) {
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
-  return formatted("errors of up to {} remain in the animations; to correct them, add --tolerance {}\n",
+  return formatted("errors of up to {} remain in the animations; to make the errors smaller, add --tolerance {}\n",
                    with_degrees(with_digits(worst, 3)), kHarmlessTolerance);
 }
 
@@ -386,7 +386,10 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
       return text +
              "nothing was changed, since this file was baked before. For smaller errors, bake the ORIGINAL file\n";
     }
-    if (bake.meshes.empty()) return text + "nothing was changed, since no morph target moves a face\n";
+    if (bake.meshes.empty())
+      return text +
+             "nothing was changed, since no morph target moves a face; if one should, export the model again with "
+             "morph targets\n";
     return text + (are_all_within(bake)
                        ? "nothing was changed, since all normals are within the tolerance\n"
                        : "nothing was changed, since bake found nothing better for the named viewers without more harm "

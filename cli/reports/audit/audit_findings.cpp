@@ -115,8 +115,9 @@ std::string group_words(const Audited& input, const Group& group) {
                  : formatted("{}: errors of up to {} degrees in the poses of --poses", of_mesh(input, found), worst);
     case Kind::kStaleKeys:
       return formatted(
-          "{}: stored normals do not turn with the surface ({}), so true normals are computed as for the base", who,
-          counted(group.count, "vertex", "vertices"));
+          "{}: stored normals do not turn with the surface ({}), so true normals are computed from the surface, in the "
+          "same way as for the base",
+          who, counted(group.count, "vertex", "vertices"));
     case Kind::kUnknownRule:
       return formatted(
           "{}: its normals follow no known weighting, so area weights are used; another --weighting would change true "
