@@ -18,7 +18,7 @@ dist() {
   fi
   # SOURCE_DATE_EPOCH is the time of all files in archives, so that an archive has the same bytes when it is made again.
   export SOURCE_DATE_EPOCH
-  [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit, and the archive will have the files of the commit; commit changes that belong into the release"
+  [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit, and the archive will have the files of the commit; commit the changes that belong to the release"
   mkdir -p "$dist"
   [ $# -gt 0 ] || { rm -f "$dist"/*; set -- "${dist_steps[@]}"; }
   for step in "${dist_steps[@]}"; do
