@@ -187,7 +187,9 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   AuditOptions audited_after = audited;
   audited_after.author = how.recompute_base ? nullptr : author;
   KnownAuthors known;
-  Result<Audit> first = audit_before(audited, known), second = audit(after.value(), audited_after, known);
+  Result<Audit> first = audit_before(audited, known);
+  if (first && author != nullptr) audited_after.weighed_like = &first.value();
+  Result<Audit> second = audit(after.value(), audited_after, known);
   constexpr std::size_t kSamplesToCompare = 81;
   if (first && second && is_worse(second.value().error, first.value().error)) {
     audited.samples = kSamplesToCompare;
@@ -366,9 +368,14 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
       report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   if (!reported) return reported.error();
   const SequenceBake& result = baked.value();
-  const bool is_stated = encoding == BakeEncoding::kEndpoint;
-  const bool is_beyond_tolerance = options.tolerance && ((result.keys && result.keys->beyond > 0) ||
-                                                         (is_stated && result.largest_error > *options.tolerance));
+  const bool is_above = options.tolerance && result.largest_error > *options.tolerance;
+  if (is_above)
+    say("bake",
+        formatted(
+            "the error of up to {} is beyond the tolerance of {}; choose another --encode or a larger --tolerance",
+            with_degrees(with_digits(result.largest_error, 4)), with_degrees(with_digits(*options.tolerance, 4))),
+        Tone::kWarning);
+  const bool is_beyond_tolerance = is_above || (result.keys && result.keys->beyond > 0);
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 

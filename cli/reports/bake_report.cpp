@@ -168,9 +168,20 @@ std::string torn(double edges) {
   return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
-std::string poses_words(bool of_animations) {
-  return of_animations ? "in the animations of the file (--animations-only does not correct single sliders)"
-                       : "in the animations of the file, and with each slider alone";
+// Returns true if the correction targets of a mesh follow its own weights. An audit of a single slider then takes them
+// as driven, which only a program does.
+bool any_to_drive(const GltfBake& bake) {
+  return std::any_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
+    return std::any_of(mesh.extras.begin(), mesh.extras.end(),
+                       [](const GltfExtraTarget& extra) { return !extra.linear.empty() || !extra.quadratic.empty(); });
+  });
+}
+
+std::string poses_words(const GltfBake& bake, bool of_animations) {
+  if (of_animations) return "in the animations of the file (--animations-only does not correct single sliders)";
+  std::string text = "in the animations of the file, and with each slider alone";
+  if (any_to_drive(bake)) text += " while a program drives the correction targets";
+  return text;
 }
 
 std::string viewers_table(const GltfBake& bake, const BakeReport& report, bool of_animations) {
@@ -188,7 +199,7 @@ std::string viewers_table(const GltfBake& bake, const BakeReport& report, bool o
     table.add_row({std::string(row.viewer->title), four_decimals(row.before.mean), four_decimals(row.after.mean),
                    four_decimals(row.before.worst), four_decimals(row.after.worst), torn(row.before.torn_edges),
                    torn(row.after.torn_edges)});
-  return formatted("\nerrors {}:\n\n{}\n", poses_words(of_animations), table.text());
+  return formatted("\nerrors {}:\n\n{}\n", poses_words(bake, of_animations), table.text());
 }
 
 std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
@@ -241,11 +252,18 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
     for (const auto& [figures, alike] : lines) text += formatted("{}{}: {}\n", words, titles_of(alike), figures);
   };
   add_others(others, "errors in ");
-  add_others(left_out, "errors that bake could not make smaller in ");
-  std::erase_if(others, [](const ViewerRow& row) { return row.after.mean <= row.before.mean + kHarmlessTolerance; });
+  add_others(left_out, "not all errors became smaller in ");
+  others.insert(others.end(), left_out.begin(), left_out.end());
+  std::erase_if(others, [](const ViewerRow& row) {
+    constexpr double kManyMore = 1.1;
+    return row.after.mean <= row.before.mean + kHarmlessTolerance &&
+           row.after.torn_edges <= kManyMore * row.before.torn_edges + 1;
+  });
   if (!others.empty())
-    text += formatted("the file is now worse in {}; if the file is shown there, bake the original file with --for {}\n",
-                      titles_of(others), others.front().viewer->name);
+    text += formatted(
+        "the average error or the number of torn edges grew in {}; if the file is shown there, bake the original file "
+        "with --for {}\n",
+        titles_of(others), others.front().viewer->name);
   return text;
 }
 
@@ -258,8 +276,9 @@ std::string left_over(const GltfBake& bake) {
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
-  return formatted("errors of up to {} remain in the animations; to make the errors smaller, add --tolerance {}\n",
-                   with_degrees(with_digits(worst, 3)), kHarmlessTolerance);
+  return formatted(
+      "errors of up to {} remain in the animations; --tolerance {} spends the bytes that smaller errors need\n",
+      with_degrees(with_digits(worst, 3)), kHarmlessTolerance);
 }
 
 // Returns a text about the number of correction targets that bake left out, and the reason.
@@ -309,14 +328,16 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
     for (const BakedCandidate& choice : mesh.candidates) {
       if (choice.animations_only != of_animations) continue;
       for (const ViewerChange& viewer : choice.viewers) {
-        const ShownErrors& errors = viewer.poses[0].after;
+        ShownErrors errors;
+        for (const ViewerChange::Errors& of_kind : viewer.poses)
+          if (of_kind.before.judged > 0 || !choice.animations_only) add_errors(of_kind.after, errors);
         table.add_row({mesh_name(mesh), name_of(choice), title_of_viewer(viewer.viewer), four_decimals(errors.mean),
                        four_decimals(errors.most), four_decimals(errors.worst)});
         any = true;
       }
     }
   }
-  return any ? formatted("\nerrors {}:\n\n{}", poses_words(of_animations), table.text()) : "";
+  return any ? formatted("\nerrors {}:\n\n{}", poses_words(bake, of_animations), table.text()) : "";
 }
 
 // Returns in words the respects in which the errors after a bake are worse or better, with figures: "on average (0.6400
@@ -392,8 +413,8 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
              "morph targets\n";
     return text + (are_all_within(bake)
                        ? "nothing was changed, since all normals are within the tolerance\n"
-                       : "nothing was changed, since bake found nothing better for the named viewers without more harm "
-                         "to other viewers; to correct the file for one viewer, give only that viewer with --for\n");
+                       : "nothing was changed, since every candidate makes some error larger; --plan lists the "
+                         "candidates, and --for VIEWER or --encode endpoint may help\n");
   }
   text += verdict(bake, report);
   Table table;
@@ -473,8 +494,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
                       counted(bake.keys->left_out, "keyframe was", "keyframes were"),
                       counted(bake.keys->even, "key", "keys"));
-    text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
-                      four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
+    text += formatted("the error is at most {} degrees{} at every instant{} (certified)\n",
+                      four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "",
+                      bake.keys->beyond > 0 ? ", except where a normal vanishes or turns too fast" : "");
     if (bake.cut)
       text += formatted(
           "normals are at most {} degrees from the normals on the curved paths, except where faces almost vanish\n",

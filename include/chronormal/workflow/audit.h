@@ -78,6 +78,8 @@ inline constexpr std::size_t kRandomPoses = 200;
 
 inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< largest number of samples per segment
 
+struct Audit;
+
 struct AuditOptions {
   std::optional<AuditRule> rule = {};  ///< by default kGltf for glTF, and kNlerp for sequences
   /// The number of samples per segment. The default is 21, or fewer in long tracks, which get about 210 samples in all.
@@ -105,6 +107,9 @@ struct AuditOptions {
   std::vector<Viewer> viewers = {};  ///< viewers that are judged, too; for glTF with the rule kGltf
   /// True to judge a glTF mesh in a node with a skin as the skin transforms the mesh.
   bool skins = true;
+  /// For glTF, an earlier audit of the same motions. Each motion then counts as much in averages as it does there,
+  /// however many samples it has here. A bake adds keys, and an audit of its result has more samples of animations.
+  const Audit* weighed_like = nullptr;
   bool weld = true;          ///< true if vertices that coincide in all keyframes share a normal
   bool keep_errors = false;  ///< true to keep every single error in Audit::errors
   /// A function that is called with the number of segments that are done, and the number of all segments.

@@ -236,7 +236,46 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   return Measured{std::move(subject), viewers.take()};
 }
 
-void add_subject(Measured measured, Audit& result) {
+// Scales the numbers of samples of an error by a factor. Counts of samples that could not be judged or lit stay.
+void weigh(MotionError& error, double factor) {
+  // Rounds the sum of all counts so far, so that the rounding errors of many small counts do not add up.
+  double due = 0;
+  std::size_t given = 0;
+  const auto scaled = [&](std::size_t count) {
+    due += factor * static_cast<double>(count);
+    const auto all = static_cast<std::size_t>(std::llround(due));
+    return all - std::exchange(given, all);
+  };
+  for (std::size_t& count : error.histogram) count = scaled(count);
+  due = 0, given = 0;
+  FineBins counts;
+  for (const FineBins::Bin& bin : error.counts.filled()) counts.add(bin.number(), scaled(bin.count()));
+  error.counts = std::move(counts);
+  error.judged = given;
+  error.sum *= factor;
+  error.sum_of_squares *= factor;
+  for (std::size_t& torn : error.torn)
+    torn = static_cast<std::size_t>(std::llround(factor * static_cast<double>(torn)));
+  error.samples = static_cast<std::size_t>(std::llround(factor * static_cast<double>(error.samples)));
+}
+
+// Gives the errors of a motion the weight in averages that the motion has in an earlier audit.
+void weigh_like(const Audit& earlier, Measured& measured) {
+  const AuditSubject& subject = measured.subject;
+  const auto same = std::find_if(earlier.subjects.begin(), earlier.subjects.end(), [&](const AuditSubject& other) {
+    return std::tie(other.kind, other.mesh, other.target, other.animation, other.track, other.node, other.expression) ==
+           std::tie(subject.kind, subject.mesh, subject.target, subject.animation, subject.track, subject.node,
+                    subject.expression);
+  });
+  if (same == earlier.subjects.end() || same->error.judged == 0 || subject.error.judged == 0) return;
+  const double factor = static_cast<double>(same->error.judged) / static_cast<double>(subject.error.judged);
+  if (factor == 1) return;
+  weigh(measured.subject.error, factor);
+  for (ViewerError& of_viewer : measured.of_viewers) weigh(of_viewer.error, factor);
+}
+
+void add_subject(const MeshAudit& mesh, Measured measured, Audit& result) {
+  if (mesh.options.weighed_like != nullptr) weigh_like(*mesh.options.weighed_like, measured);
   for (std::size_t h = 0; h < measured.of_viewers.size(); ++h) {
     ViewerAudit& viewer = result.viewers[h];
     const ViewerError& found = measured.of_viewers[h];
@@ -298,7 +337,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   for (const AuditFinding& fault : faults_of_target(mesh.document, shading, mesh.truth, mesh.rule, measured->subject,
                                                     part, involved, weights.specified))
     result.findings.push_back(fault);
-  add_subject(std::move(*measured), result);
+  add_subject(mesh, std::move(*measured), result);
 }
 
 // Audits a track at its keys and between them. Judges the part of the mesh that the track moves. Returns nothing for a
@@ -393,7 +432,7 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
       if (const auto fault = fault_of_track(measured.subject, are_targets_judged, worst_target))
         result.findings.push_back(*fault);
     }
-    add_subject(std::move(measured), result);
+    add_subject(mesh, std::move(measured), result);
   }
   return Success{};
 }
@@ -446,7 +485,7 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
     return;
   }
   if (const auto fault = fault_of_track(measured->subject, true, worst_target)) result.findings.push_back(*fault);
-  add_subject(std::move(*measured), result);
+  add_subject(mesh, std::move(*measured), result);
 }
 
 // Lists the distinct sets of weights that a mesh has when the file is opened, except sets of zeros. Each set has the
@@ -471,13 +510,13 @@ std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_
   return poses;
 }
 
-void add_poses(std::optional<Measured> measured, Audit& result) {
+void add_poses(const MeshAudit& mesh, std::optional<Measured> measured, Audit& result) {
   if (!measured) {
     ++result.still;
     return;
   }
   if (std::optional<AuditFinding> fault = fault_of_pose(measured->subject)) result.findings.push_back(*fault);
-  add_subject(std::move(*measured), result);
+  add_subject(mesh, std::move(*measured), result);
 }
 
 // Audits the poses that a mesh has when a viewer opens the file.
@@ -489,7 +528,7 @@ void audit_openings(const MeshAudit& mesh, Audit& result) {
     std::optional<MeshSkin> skin;
     if (node && mesh.options.skins && mesh.document.nodes()[*node].has_skin)
       skin = read_skin(mesh.document, mesh.shading, *node, std::nullopt, mesh.unread);
-    add_poses(measure_poses(mesh, {weights}, skin ? &*skin : nullptr, std::move(subject), result.subjects.size()),
+    add_poses(mesh, measure_poses(mesh, {weights}, skin ? &*skin : nullptr, std::move(subject), result.subjects.size()),
               result);
   }
 }
@@ -515,7 +554,7 @@ void audit_asked_poses(const MeshAudit& mesh, Audit& result) {
   for (std::vector<double>& pose : poses) fill_extra_weights(mesh.shading, pose);
   AuditSubject subject;
   subject.kind = AuditSubject::Kind::kPoses;
-  add_poses(measure_poses(mesh, poses, mesh.standing, std::move(subject), result.subjects.size()), result);
+  add_poses(mesh, measure_poses(mesh, poses, mesh.standing, std::move(subject), result.subjects.size()), result);
 }
 
 // Counts the segments of all subjects, for reports of progress.

@@ -23,6 +23,7 @@
 #include "workflow/bake/deltas/candidate.h"
 #include "workflow/bake/deltas/deltas.h"
 #include "workflow/bake/deltas/plan.h"
+#include "workflow/bake/deltas/right_normals.h"
 #include "workflow/bake/deltas/shared_parts.h"
 #include "workflow/bake/deltas/tangents.h"
 #include "workflow/bake/deltas/terms.h"
@@ -129,14 +130,44 @@ struct MeshDeltas {
   std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target keeps its deltas
   std::function<TargetDeltas(std::size_t extra)> extra;
   GrownMesh grown;
-  bool is_new = true;  // false if the mesh stays as it is
+  bool is_new = true;          // false if the mesh stays as it is
+  bool are_keys_right = true;  // true if normals are right at weight 1 of each target of the mesh
 };
 
 MeshDeltas exact_deltas(const DeltaSource& source) {
   return {[&source](std::size_t i) { return own_target_deltas(source, i); },
           [&source](std::size_t k) { return extra_target_deltas(source, source.plan.extras[k]); },
-          {source.shading.mesh, {source.plan.extras, {}, {}, {}, {}}, false},
-          true};
+          {source.shading.mesh, {source.plan.extras, {}, {}, {}, {}}, false}};
+}
+
+// Returns true if a candidate renders the right normals, up to a degree, at weight 1 of each target of the mesh. Then an
+// audit of the baked file can learn from these normals which rule the author's normals follow.
+bool are_keys_right(const DeltaSource& source, const Candidate& candidate) {
+  constexpr double kRight = 1;  // degrees
+  const GltfShading& shading = source.shading;
+  const RightNormals rights(shading, source.terms, source.base_normals, source.plan.largest);
+  for (std::size_t k = 0; k < shading.own_targets(); ++k) {
+    if (!changes(shading, k)) continue;
+    std::vector<double> own(shading.set.targets.size());
+    own[k] = 1;
+    const std::vector<double> pose = candidate.drivers.with_extras(own);
+    std::vector<Vec3d> shown(shading.element_of_vertex.size());
+    for (std::size_t v = 0; v < shown.size(); ++v) shown[v] = rights.stored(v);
+    const auto add = [&](const VertexVectors& column, double weight) {
+      for (std::size_t n = 0; weight != 0 && n < column.vertices.size(); ++n)
+        shown[column.vertices[n]] = shown[column.vertices[n]] + weight * to_double(column.vectors[n]);
+    };
+    add(candidate.own[k], 1);
+    for (std::size_t x = 0; x < candidate.extras.size(); ++x) add(candidate.extras[x], pose[own.size() + x]);
+    const std::vector<Vec3d> of_elements = rights.of_elements(own);
+    for (std::size_t v = 0; v < shown.size(); ++v) {
+      const std::uint32_t e = shading.element_of_vertex[v];
+      if (e == GltfShading::kNoElement) continue;
+      const Vec3d right = rights.of_vertex(v, of_elements[e]);
+      if (right != Vec3d{} && angle_between(shown[v], right) * kDegreesPerRadian > kRight) return false;
+    }
+  }
+  return true;
 }
 
 // Returns the deltas for encodings other than exact, and adds facts about the chosen candidate to the report.
@@ -153,7 +184,8 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
   return {[&source, candidate](std::size_t i) { return own_deltas(source.shading, *candidate, i); },
           [&source, candidate](std::size_t k) { return extra_deltas(source.shading, *candidate, k); },
           {source.shading.mesh, candidate->drivers, source.plan.encoding != BakeEncoding::kEndpoint},
-          changes(source.shading, *candidate)};
+          changes(source.shading, *candidate),
+          !source.terms.follow_keys() || are_keys_right(source, *candidate)};
 }
 
 // Estimates the bytes that the deltas of new tangents take in the file.
@@ -277,8 +309,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras, deltas.grown.drivers.rest);
-  baked.report.unmarked_nodes = writer.set_mark(
-      {plan.encoding, false, baked.report.extras, is_of_animations, truth.follows_keys() && !is_of_animations});
+  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras, is_of_animations,
+                                                 truth.follows_keys() && !is_of_animations && deltas.are_keys_right});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.grown = std::move(deltas.grown);

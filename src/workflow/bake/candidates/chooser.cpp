@@ -125,33 +125,37 @@ class Chooser {
     judged.is_affordable = bytes <= most_bytes() && candidate.drivers.size() <= most_extras(options_, targets);
     judged.is_bearable = bytes <= bearable_bytes(candidate.drivers.size());
     const bool is_stored = candidate.name == stored_.name;
-    if (is_hopeless(candidate)) return bytes;
+    const bool is_out = is_closed_ || is_hopeless(candidate);
+    if (is_out && !options_.plan) return bytes;
     const std::vector<ErrorsOfKinds> after = is_stored ? before_ : judge_->measure(candidate, Judge::Depth::kAll);
     judge(after, judged);
-    const bool is_best = !best_ || is_better(judged, of_best_);
+    const bool is_best = !best_ || (!is_out && is_better(judged, of_best_));
     if (is_best) of_choice_ = candidates_.size();
     candidates_.push_back(choice);
     if (is_best) {
       best_ = std::move(candidate);
       of_best_ = std::move(judged);
-      best_glance_ = mean_of(after);
+      means_of_best_ = means_of(after);
     }
     return bytes;
   }
 
-  // Returns true if a glance (a measurement in a few poses) shows that a candidate is beyond the tolerance. If a plan
-  // is requested (options_.plan), all candidates must be measured, so the result is false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate is beyond the tolerance.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
-    return !options_.plan && is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
+    return is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
   }
-  // Returns true if a glance (a measurement in a few poses) shows that a candidate cannot be the best. If a plan is
-  // requested (options_.plan), all candidates must be measured, so the result is false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate cannot be the best, since its mean
+  // error is much larger in every named viewer.
   [[nodiscard]] bool is_hopeless(const Candidate& candidate) const {
-    if (!best_ || options_.plan) return false;
+    if (!best_) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
-    const double mean = mean_of(glance);
-    if (mean > kHopeless * std::fmax(best_glance_, tolerance_ / 2)) return true;
-    return serves_all() && of_best_.is_bearable && mean > kFarther * of_best_.mean && is_beyond(glance);
+    const std::vector<double> means = means_of(glance);
+    bool is_much_larger = true;
+    for (std::size_t v = 0; v < means.size(); ++v)
+      is_much_larger = is_much_larger && means[v] > kHopeless * std::fmax(means_of_best_[v], tolerance_ / 2);
+    if (is_much_larger) return true;
+    const double least = *std::min_element(means.begin(), means.end());
+    return serves_all() && of_best_.is_bearable && least > kFarther * of_best_.mean && is_beyond(glance);
   }
 
   [[nodiscard]] std::size_t most_bytes() const {
@@ -175,12 +179,18 @@ class Chooser {
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
   // Returns true if the best candidate is accurate enough and takes at most `bytes` bytes, so that no other candidate
-  // needs to be tried. If a plan is requested (options_.plan), all candidates must be measured, so the result is false.
-  [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
+  // needs to be tried.
+  [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) {
     return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
-           !options_.plan;
+           ends_choice();
   }
-  [[nodiscard]] bool plans() const noexcept { return options_.plan; }
+  // Ends the choice. Returns true if no more candidates are needed, and false if a plan is requested (options_.plan).
+  // For a plan all other candidates are measured, too, but none of them is chosen, so that a plan names the candidate
+  // that a bake writes.
+  [[nodiscard]] bool ends_choice() noexcept {
+    is_closed_ = true;
+    return !options_.plan;
+  }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
   // Reduces the tolerance for which candidates are made, if skins make all candidates miss the given tolerance. Returns
@@ -240,12 +250,11 @@ class Chooser {
                        [&](const ErrorsOfKinds& of_viewer) { return of_viewer[0].spread.worst > tolerance_; });
   }
 
-  // Returns the smallest of the mean errors in the named viewers, because a candidate may help one viewer and harm the
-  // others.
-  [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
-    return least;
+  // Returns the mean errors in the named viewers.
+  [[nodiscard]] std::vector<double> means_of(const std::vector<ErrorsOfKinds>& errors) const {
+    std::vector<double> result;
+    for (std::size_t v = 0; v < options_.viewers.size(); ++v) result.push_back(file_of(errors[v]).mean);
+    return result;
   }
 
   void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
@@ -336,8 +345,9 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;  // the index of the best candidate in candidates_
-  double best_glance_ = 0;
+  std::size_t of_choice_ = 0;          // the index of the best candidate in candidates_
+  std::vector<double> means_of_best_;  // the mean errors of the best candidate in the named viewers
+  bool is_closed_ = false;             // if true, other candidates are only measured
   std::vector<BakedCandidate> candidates_;
 };
 
@@ -364,7 +374,8 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
     chooser.consider(std::move(candidate));
-    if (chooser.is_found() || (!chooser.plans() && chooser.of_best().mean > kWorthIt * mean)) return false;
+    if (chooser.is_found()) return false;
+    if (chooser.of_best().mean > kWorthIt * mean && chooser.ends_choice()) return false;
     mean = chooser.of_best().mean;
     return true;
   });
@@ -398,6 +409,10 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(20);
   if (chooser.is_found()) return;
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
+  // Deltas of any length may be closer than deltas that are right at weight 1, even if the terms of n(w) are a fit.
+  if (!chooser.is_found() && !making.rights.are_by_area() && making.lengths != Lengths::kUnit &&
+      !has_unit(making.viewers))
+    chooser.consider(fitted_candidate(source));
   std::optional<Candidate> similar;  // if set, own deltas of any length are judged last
   if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
     // Tries deltas of any length too. Viewers that add deltas as stored render the true normals with them, and in many

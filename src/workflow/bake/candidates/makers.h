@@ -75,6 +75,10 @@ inline constexpr double kPartOfTracks = 0.2;
 /// (FittedLines).
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
+/// Makes a candidate with the deltas that the plan of the source requires, of any length. If normals are not weighted by
+/// area, these deltas are for a fit to the true normals.
+[[nodiscard]] Candidate fitted_candidate(const DeltaSource& source);
+
 // Makers of candidates with correction targets whose weights are products of the weights of the mesh's own targets
 // (products.cpp).
 

@@ -23,19 +23,9 @@ Candidate stored_candidate(const DeltaSource& source) {
   return result;
 }
 
-Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
+Candidate fitted_candidate(const DeltaSource& source) {
   Candidate result;
   result.name = "own deltas";
-  // If the true normals are not quadratic in the weight, the terms of n(w) are only a fit to the true normals. For this
-  // reason deltas are computed from the true normal at weight 1 instead.
-  const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
-  if (lengths != Lengths::kFree || is_of_truth) {
-    // The deltas give the normal at weight 1 the length of N. The stored normals of an author have that length too, so
-    // stored deltas that are right hardly change.
-    result.own =
-        end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
-    return result;
-  }
   for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i) {
     const TargetDeltas deltas = own_target_deltas(source, i);
     result.fit_error = std::fmax(result.fit_error, deltas.error);
@@ -43,6 +33,22 @@ Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, L
   }
   result.fit_error = std::fmax(result.fit_error, source.plan.lines.largest_error());
   return result;
+}
+
+Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
+  // If the true normals are not quadratic in the weight, the terms of n(w) are only a fit to the true normals. For this
+  // reason deltas are computed from the true normal at weight 1 instead.
+  const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
+  if (lengths != Lengths::kFree || is_of_truth) {
+    // The deltas give the normal at weight 1 the length of N. The stored normals of an author have that length too, so
+    // stored deltas that are right hardly change.
+    Candidate result;
+    result.name = "own deltas";
+    result.own =
+        end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
+    return result;
+  }
+  return fitted_candidate(source);
 }
 
 }  // namespace chronormal::inline internal

@@ -141,8 +141,9 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
     remedies.emplace_back("name only the viewers that you need with --for");
   remedies.emplace_back("choose a larger --tolerance");
-  std::string text = "bake could not bring all errors within " + within +
-                     (chosen->skinned ? " with the skin applied" : "") + ", so the closest result was written; ";
+  std::string text =
+      "bake could not bring all errors within " + within + (chosen->skinned ? " with the skin applied" : "") +
+      (chosen->name == "as it is" ? ", so the mesh stays as it is; " : ", so the closest result was written; ");
   for (std::size_t n = 0; n < remedies.size(); ++n)
     text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
   warnings.push_back({label_of(mesh, baked), std::move(text)});
@@ -160,6 +161,10 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
                             "a time; if a program mixes several sliders, add --poses, and let the program drive the "
                             "correction targets (as chronormal/three, /babylon and /playcanvas do)");
   }
+  if (plan.is_driven && options.is_posed)
+    warn(
+        "an animation drives the targets, so the mesh is baked for the animation and not for the given poses; use "
+        "--encode exact for both, or bake a file without the animation");
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn(
         "weights of the animations are so large that float32 cannot hold their products, so there are no correction "
