@@ -172,7 +172,8 @@ std::string torn(double edges) {
 // as driven, which only a program does.
 bool any_to_drive(const GltfBake& bake) {
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
-    return std::any_of(mesh.extras.begin(), mesh.extras.end(),
+    return mesh.encoding != BakeEncoding::kSmallest &&
+           std::any_of(mesh.extras.begin(), mesh.extras.end(),
                        [](const GltfExtraTarget& extra) { return !extra.linear.empty() || !extra.quadratic.empty(); });
   });
 }

@@ -286,15 +286,27 @@ void add_subject(const MeshAudit& mesh, Measured measured, Audit& result) {
   result.subjects.push_back(std::move(measured.subject));
 }
 
+// Returns true if a bake made the correction targets of a mesh for its animations, so that nothing drives them when
+// somebody moves a slider. (The encodings harmless and exact are also for programs that drive correction targets.)
+bool are_extras_of_tracks(const MeshAudit& mesh) {
+  if (!mesh.shading.mark || mesh.shading.mark->encoding != BakeEncoding::kSmallest) return false;
+  const Tracks tracks = tracks_of(mesh.document, mesh.shading.mesh, std::nullopt);
+  return std::any_of(tracks.begin(), tracks.end(), [&](const auto& track) {
+    const Result<GltfKeys> keys = mesh.document.keys(track.first, track.second);
+    return keys && std::any_of(keys.value().values.begin(), keys.value().values.end(), [](float w) { return w != 0; });
+  });
+}
+
 // Audits target k alone, from the lowest to the highest of the weights that the options give. Correction targets that a
-// bake has added get the weights that follow from the weight of target k.
+// bake has added get the weights that follow from the weight of target k, or 0 if only animations drive them.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   Involved involved = {k};
+  const bool are_driven = shading.mark && !are_extras_of_tracks(mesh);
   if (shading.mark) {
     for (const GltfExtraTarget& extra : shading.mark->extras) {
       if (extra.target == k) return;
-      if (extra.follows(k)) involved.push_back(extra.target);
+      if (are_driven && extra.follows(k)) involved.push_back(extra.target);
     }
   }
   std::sort(involved.begin(), involved.end());
@@ -319,7 +331,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   };
   // A mesh may have thousands of targets, so an array of all weights is only made if correction targets need it.
   weights.specified = [&](std::size_t, double t, std::span<double> alone) { alone[0] = weight_at(t); };
-  if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
+  if (are_driven) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
   for (const Viewer& viewer : mesh.options.viewers) {
     weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
       weights.specified(segment, t, played);

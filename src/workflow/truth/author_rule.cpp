@@ -84,6 +84,7 @@ struct Distances {
   // nothing. `silent_off` is the number of such normals that are more than kTells degrees from the sum of triangle
   // normals by area.
   std::size_t silent = 0, silent_off = 0;
+  std::vector<float> of_silent;  // the angles in degrees between such normals and the sums of triangle normals by area
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -91,6 +92,7 @@ struct Distances {
     spread.insert(spread.end(), other.spread.begin(), other.spread.end());
     silent += other.silent;
     silent_off += other.silent_off;
+    of_silent.insert(of_silent.end(), other.of_silent.begin(), other.of_silent.end());
   }
 };
 
@@ -406,10 +408,25 @@ class Candidates {
     return std::nullopt;
   }
 
-  // Returns true if the keys do not tell candidates apart. Then the quads from which the file was cut are as good as
-  // any other candidate.
-  [[nodiscard]] bool are_quads_as_good() const {
-    return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
+  // Returns true if most normals at keys do not tell candidates apart, and the others are no farther from the quads from
+  // which the file was cut than from the candidate `than`, which adds up triangles.
+  [[nodiscard]] bool are_quads_as_good(std::size_t than) {
+    if (!is_of_quads_ || keys_.silent <= keys_.told[0].size() || 2 * keys_.silent_off >= keys_.silent) return false;
+    return keys_.told[0].empty() || quantile(keys_.told[as_quads(than)], 0.5) <= quantile(keys_.told[than], 0.5);
+  }
+  // Returns the candidate that differs from a candidate with triangles only in its quads.
+  [[nodiscard]] static std::size_t as_quads(std::size_t candidate) { return candidate + 2 * kWeightings.size(); }
+
+  // Returns true if the stored normals were rounded, for example to 12 bits: most of them are near the sums of a
+  // candidate, but not equal to them. Some of them then equal other sums by chance.
+  [[nodiscard]] bool are_rounded(std::size_t c) const {
+    constexpr double kNear = 1;  // degrees
+    std::vector<float> all;
+    for (const Distances* of : {&keys_, &of_base_})
+      for (const std::vector<float>* some : {&of->told[c], &of->of_silent})
+        all.insert(all.end(), some->begin(), some->end());
+    const double middle = quantile(all, 0.5);
+    return middle > 2 * kOff && middle <= kNear;
   }
 
   // Returns true if all examined elements follow a candidate exactly. Then the rule needs no changes.
@@ -527,6 +544,7 @@ class Candidates {
           found.told[c].push_back(static_cast<float>(off * kDegreesPerRadian));
         } else if (c == area()) {
           ++found.silent;
+          found.of_silent.push_back(static_cast<float>(off * kDegreesPerRadian));
           found.silent_off += off * kDegreesPerRadian > kTells ? 1U : 0U;
         }
       }
@@ -572,7 +590,7 @@ FoundRule find_author_rule(const GltfShading& shading) {
       polygons = &tried;
       rule.weighting = Candidates::weighting_of(found);
       rule.is_followed = true;
-      if (candidates.do_all_follow(found)) return true;
+      if (candidates.do_all_follow(found) || (is_sure && candidates.are_rounded(found))) return true;
       Mending mending(shading, tried, Candidates::weighting_of(found), vertex_of);
       mending.choose_whole_points();
       mending.mend_polygons();
@@ -591,8 +609,9 @@ FoundRule find_author_rule(const GltfShading& shading) {
     std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {
       found = candidates.closest(0.5, kFollowsRule, kClear, true);
-      if (candidates.are_quads_as_good() && !Candidates::is_of_polygons(found.value_or(candidates.area())))
-        found = found.value_or(candidates.area()) + 2 * kWeightings.size();
+      const std::size_t of_triangles = found.value_or(candidates.area());
+      if (!Candidates::is_of_polygons(of_triangles) && candidates.are_quads_as_good(of_triangles))
+        found = Candidates::as_quads(of_triangles);
       if (found) (void)accept(*found, true);
     }
     rule.distance = candidates.distance();

@@ -23,7 +23,8 @@
 /// Around stored normals that do not follow the rule, the rule is changed if the change makes a stored normal follow
 /// exactly. Three changes are possible: consecutive triangles become larger polygons, quads are split, and elements add
 /// up all corners at their points (also on both sides of faces that look like the two sides of a sheet but are not). A
-/// change that only brings stored normals nearer to their sums is not made, since the gain may be chance.
+/// change that only brings stored normals nearer to their sums is not made, since the gain may be chance. If most stored
+/// normals are near the sums of the rule but not equal to them, they were rounded, and no change is made at all.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 

@@ -279,10 +279,7 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      if (is_named)
-        least_gain = std::fmin(least_gain, then.mean - now.mean);
-      else
-        most_harm = std::fmax(most_harm, now.mean - then.mean);
+      most_harm = std::fmax(most_harm, now.mean - then.mean);
       // If the caller has requested an encoding, a candidate is better than the deltas of the file under two
       // conditions. Its mean error must be smaller, in the poses of the file or in all poses. In addition, it must not
       // tear more edges, or none of its errors may have grown.
@@ -290,7 +287,10 @@ class Chooser {
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
                                   : !any_grows && now.mean < kBetter * then.mean;
-      if (is_named && change.is_better) ++judged.better;
+      if (is_named && change.is_better) {
+        ++judged.better;
+        least_gain = std::fmin(least_gain, then.mean - now.mean);
+      }
       if (!is_named && (is_asked || !any_grows)) ++judged.unharmed;
       if (!is_named) judged.mean_of_spared = std::fmax(judged.mean_of_spared, file_of(after[v]).mean);
       if (!is_named) continue;
@@ -303,8 +303,8 @@ class Chooser {
     }
     judged.mean = choice.played.mean;
     choice.within = judged.is_affordable && choice.played.worst <= tolerance_;
-    // If the mean error grows by more than the tolerance in another viewer, and falls by less in some named viewer, the
-    // candidate counts as better in no viewer, unless the caller asked for this candidate.
+    // If the mean error grows by more than the tolerance in some viewer, and falls by less in a named viewer in which the
+    // candidate is better, the candidate counts as better in no viewer, unless the caller asked for this candidate.
     const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest || (options_.tolerance && choice.within);
     if (!is_asked && most_harm > tolerance_ && most_harm > least_gain) judged.better = 0;
   }

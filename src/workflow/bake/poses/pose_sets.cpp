@@ -101,6 +101,8 @@ std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& 
       seen.weights.insert(seen.weights.end(), all.begin() + static_cast<std::ptrdiff_t>(own), all.end());
     } else if (pose.standing != PlayedPose::kNone) {
       seen.weights = standing[pose.standing];
+    } else if (set.kind == PoseKind::kAlone && !weights.rig && !weights.tracks.empty()) {
+      seen.weights.resize(seen.weights.size() + drivers.size());  // only animations drive the correction targets
     } else {
       seen.weights = drivers.with_extras(std::move(seen.weights));
     }
