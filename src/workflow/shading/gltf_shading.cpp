@@ -58,6 +58,21 @@ void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, B
   }
 }
 
+// Removes the triangles that name a vertex twice, with which a long strip joins its parts. They never have an area, so
+// they neither move normals nor show any. Keeps them if the primitive has no other triangles, since it must have faces.
+void drop_stitches(std::vector<std::uint32_t>& corners) {
+  const auto is_stitch = [&](std::size_t c) {
+    return corners[c] == corners[c + 1] || corners[c + 1] == corners[c + 2] || corners[c + 2] == corners[c];
+  };
+  std::size_t kept = 0;
+  for (std::size_t c = 0; c + 2 < corners.size(); c += 3) {
+    if (is_stitch(c)) continue;
+    for (std::size_t i = 0; i < 3; ++i) corners[kept + i] = corners[c + i];
+    kept += 3;
+  }
+  if (kept > 0) corners.resize(kept);
+}
+
 // Reads the arrays of all primitives with faces, one primitive after the other. Targets are read one at a time, to save
 // memory.
 Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& shading) {
@@ -76,6 +91,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
     Result<GltfGeometry> read = document.geometry(shading.mesh, p, {.shading = true, .targets = false});
     if (!read) return read.error();
     GltfGeometry& geometry = read.value();
+    drop_stitches(geometry.corners);
     const std::size_t count = geometry.positions.size() / 3;
     if (vertices + count >= std::numeric_limits<std::uint32_t>::max() / 3)
       return invalid_input(mesh_place(document, shading.mesh),

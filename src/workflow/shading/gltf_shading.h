@@ -87,6 +87,9 @@ struct GltfShading {
 /// Reads one mesh. Vertices with the same place in the base and the same deltas in all targets are one point, even if
 /// they belong to different primitives. The vertices of one point share a normal if their stored base normals agree.
 ///
+/// Triangles that name a vertex twice are left out, unless a primitive has no others: a mesh must give the same normals
+/// as a strip, which needs such triangles, and as a list.
+///
 /// Vertices of primitives without NORMAL have no element, and their faces do not count. If options.smooth is true,
 /// these vertices get normals by the crease angle, and share them only among each other. A vertex of the file has a
 /// single normal, so a crease cannot split it: the elements on both sides of the crease are joined there, and

@@ -447,6 +447,37 @@ TEST(Audit, takes_from_2_to_1000001_samples) {
   EXPECT_EQ(most.value().error.judged, 3U * 1000001);
 }
 
+TEST(Audit, triangles_that_join_the_parts_of_a_strip_change_nothing) {
+  constexpr std::uint64_t kSeed = 23;
+  RecordProperty("seed", static_cast<int>(kSeed));
+  fixtures::Random random(kSeed);
+  for (std::uint64_t round = 0; round < 10; ++round) {
+    ShadedMesh mesh = random_sheet(kSeed + round, 7, 2, 0.2);
+    // The first target moves one vertex, so most faces stand still, and a stitch may reach from it to any of them.
+    for (std::size_t i = 3; i < mesh.targets[0].positions.size(); ++i) mesh.targets[0].positions[i] = 0;
+    for (float& delta : mesh.targets[0].normals) delta = 0;
+    mesh.targets[0].positions[2] = 0.5F;
+    ShadedMesh strip = mesh;
+    strip.corners.clear();
+    for (std::size_t c = 0; c < mesh.corners.size(); c += 3) {
+      const auto triangle = mesh.corners.begin() + static_cast<std::ptrdiff_t>(c);
+      strip.corners.insert(strip.corners.end(), triangle, triangle + 3);
+      const auto from = static_cast<std::uint32_t>(random.below(2) == 0 ? 0 : random.below(mesh.vertices()));
+      const auto to = static_cast<std::uint32_t>(random.below(mesh.vertices()));
+      strip.corners.insert(strip.corners.end(), {from, from, to, from, to, to});
+    }
+    const Audit list = audit_of(mesh.file(), {.samples = 5}), result = audit_of(strip.file(), {.samples = 5});
+    ASSERT_EQ(result.subjects.size(), list.subjects.size());
+    for (std::size_t s = 0; s < list.subjects.size(); ++s)
+      EXPECT_EQ(result.subjects[s].vertices, list.subjects[s].vertices) << "round " << round;
+    EXPECT_EQ(result.error.judged, list.error.judged);
+    EXPECT_EQ(result.error.no_normal, list.error.no_normal);
+    EXPECT_EQ(result.error.sum, list.error.sum);
+    EXPECT_EQ(result.error.worst, list.error.worst);
+    EXPECT_EQ(result.error.most_torn, list.error.most_torn);
+  }
+}
+
 // ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {

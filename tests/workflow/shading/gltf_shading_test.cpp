@@ -198,6 +198,22 @@ TEST(GltfShading, normals_from_positions_are_those_of_an_independent_sum) {
   }
 }
 
+TEST(GltfShading, triangles_that_name_a_vertex_twice_are_left_out) {
+  const ShadedMesh mesh = hinge();
+  ShadedMesh strip = mesh;
+  strip.corners = {0, 0, 1, 0, 1, 2, 3, 0, 3, 1, 3, 3, 2, 1, 3, 2, 2, 2};
+  const GltfShading shading = read(strip.file());
+  const auto corners = shading.set.topology.corners();
+  EXPECT_EQ(std::vector<std::uint32_t>(corners.begin(), corners.end()), mesh.corners);
+  EXPECT_EQ(shading.parts[0].face_count, 2U);
+  EXPECT_EQ(shading.groups.faces(shading.element_of_vertex[3]).size(), 1U);
+  // The second primitive begins after the triangles of the first that are left.
+  EXPECT_EQ(read(halves(strip, half(1))).parts[1].first_face, 2U);
+  // A primitive without any other triangle keeps them.
+  strip.corners = {0, 1, 1};
+  EXPECT_EQ(read(strip.file()).set.topology.face_count(), 1U);
+}
+
 TEST(GltfShading, stored_arrays_have_zeros_where_a_primitive_has_none) {
   ShadedMesh first = half(0), second = half(1);
   first.normals.clear();
