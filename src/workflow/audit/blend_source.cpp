@@ -251,6 +251,23 @@ JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth, std
           std::move(outputs),   rule == AuditRule::kFlat, truth.is_plain() ? nullptr : &truth.sums()};
 }
 
+namespace {
+
+// Finds the vertices of faces that can have an area. A face with two corners at one place has no area in any pose, so
+// no viewer draws it, and the normal of a vertex without any other face does not matter.
+std::vector<bool> drawn_vertices(const GltfShading& shading) {
+  const auto corners = shading.set.topology.corners();
+  std::vector<bool> result(shading.set.topology.vertex_count());
+  for (std::size_t c = 0; c < corners.size(); c += 3) {
+    const std::uint32_t a = shading.place_of(corners[c]), b = shading.place_of(corners[c + 1]),
+                        d = shading.place_of(corners[c + 2]);
+    for (std::size_t i = c; i < c + 3 && a != b && b != d && d != a; ++i) result[corners[i]] = true;
+  }
+  return result;
+}
+
+}  // namespace
+
 std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                          std::span<const std::size_t> involved, AuditRule rule) {
   const Topology& topology = shading.set.topology;
@@ -268,9 +285,10 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const Autho
     for (const std::size_t k : involved)
       for (const std::uint32_t e : truth.elements_of(k)) element_moves[e] = true;
   }
+  const std::vector<bool> is_drawn = drawn_vertices(shading);
   const auto is_judged = [&](std::uint32_t v) {
     const std::uint32_t e = shading.element_of_vertex[v];
-    if (e == GltfShading::kNoElement) return false;
+    if (e == GltfShading::kNoElement || !is_drawn[v]) return false;
     if (element_moves[e]) return true;
     return std::any_of(involved.begin(), involved.end(), [&](std::size_t k) {
       return !shading.normal_deltas[k].empty() && vector_at(shading.normal_deltas[k], v) != Vec3f{};

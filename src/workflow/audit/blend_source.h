@@ -121,7 +121,8 @@ class BlendSource {
 };
 
 /// Lists the vertices whose normals change with the involved targets, because such a target moves a face around the
-/// vertex or has a delta for its stored normal. For the rule flat, lists corners instead of vertices.
+/// vertex or has a delta for its stored normal. Leaves out vertices whose faces all have two corners at one place. For
+/// the rule flat, lists corners instead of vertices.
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
 

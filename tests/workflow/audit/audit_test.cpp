@@ -478,6 +478,21 @@ TEST(Audit, triangles_that_join_the_parts_of_a_strip_change_nothing) {
   }
 }
 
+TEST(Audit, vertices_that_only_faces_with_two_corners_at_one_place_have_are_not_judged) {
+  ShadedMesh mesh = hinge();
+  const Audit without = audit_of(mesh.file(), {.samples = 5});
+  // Vertices 4 and 5 are at the place of vertex 3 in every pose, and belong only to a face without area.
+  for (std::size_t copy = 0; copy < 2; ++copy) {
+    for (std::vector<float>* const values : {&mesh.positions, &mesh.normals, &mesh.targets[0].positions})
+      for (std::size_t i = 9; i < 12; ++i) values->push_back(float{(*values)[i]});
+  }
+  mesh.corners.insert(mesh.corners.end(), {4, 5, 0});
+  const Audit result = audit_of(mesh.file(), {.samples = 5});
+  EXPECT_EQ(result.subjects.at(0).vertices, without.subjects.at(0).vertices);
+  EXPECT_EQ(result.error.judged, without.error.judged);
+  EXPECT_EQ(result.error.sum, without.error.sum);
+}
+
 // ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {

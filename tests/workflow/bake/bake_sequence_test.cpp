@@ -20,6 +20,7 @@
 
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "core/text.h"
 #include "io/gltf/gltf_motion.h"
@@ -384,6 +385,25 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   for (std::size_t i = 0; i < glb.corners.size(); i += 6)
     surface.faces.push_back({glb.corners[i], glb.corners[i + 1], glb.corners[i + 2], glb.corners[i + 5]});
   expect_exact(glb, surface);
+}
+
+TEST(BakeSequence, corners_of_faces_without_area_do_not_count_as_errors) {
+  // A flat sheet of four triangles turns over. A hard edge separates a face without area from it, so the corners of
+  // this face get vertices of their own, whose normals say nothing.
+  for (const std::uint32_t last : {3U, 6U}) {
+    Motion motion;
+    motion.topology = Topology::triangles(7, {0, 3, 4, 0, 4, 1, 1, 4, 5, 1, 5, 2, 0, 3, last}).value();
+    motion.keyframes = {{{0, 0, 0, 0, 1, 0, 0, 2, 0, 1, 0, 0, 1, 1, 0, 1, 2, 0, 1, 0, 0}, 0, ""},
+                        {{0, 0, 0, 0, -1, 0, 0, -2, 0, 1, 0, 0.1F, 1, -1, 0.1F, 1, -2, 0.1F, 1, 0, 0.1F}, 1, ""}};
+    motion.connect_as_sequence();
+    const std::string file = bake(motion, {.crease_angle = 45});
+    const Result<GltfDocument> document = GltfDocument::read(file, "a.glb");
+    ASSERT_TRUE(document.ok()) << document.error().text();
+    const Result<Audit> found = audit(document.value(), {});
+    ASSERT_TRUE(found.ok()) << found.error().text();
+    EXPECT_GT(found.value().error.judged, 0U);
+    EXPECT_LT(found.value().error.worst, 0.05) << "corner " << last;
+  }
 }
 
 // Makes a sheet that is a point in its first keyframe or, if keep_half, a line.
