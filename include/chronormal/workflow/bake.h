@@ -67,7 +67,8 @@ struct BakeOptions {
   double crease_angle = 180;  ///< degrees; decides the hard edges of smoothed primitives and of sequences
   /// The normals of keyframe 0 of a sequence, one for each corner, or empty. They determine the hard edges instead of
   /// the crease angle, and also the weighting of the true normals if no weighting is given. The rotation from the true
-  /// normals to these normals is kept. (The encoding kKeys uses them only for the hard edges.)
+  /// normals to these normals is kept. (The encoding kKeys uses them only for the hard edges.) If their median angle to
+  /// the surface exceeds 45 degrees, they do not belong to it and are ignored, with a warning.
   VectorView<const float> normal_of_corner = {};
   /// Reads the normals that keyframe k of a sequence stores, one for each corner, or an empty list. If this function is
   /// given, the weighting follows from the normals of later keyframes, too: a flat keyframe 0 has the same normals by

@@ -198,6 +198,21 @@ AuthoredWeighting find_authored_weighting(
   return result;
 }
 
+double median_angle(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups,
+                    VectorView<const float> normal_of_corner) {
+  const std::vector<Vec3d> normals =
+      all_weighted_normals_at({&topology, positions, positions, 0, 1, 0}, groups, Weighting::kArea, 0);
+  std::vector<float> angles;
+  for (std::size_t e = 0; e < groups.size(); ++e) {
+    if (groups.corners(e).empty()) continue;
+    const Vec3d stored = to_double(normal_of_corner[groups.corners(e)[0]]);
+    if (stored == Vec3d{} || !is_finite(stored) || normals[e] == Vec3d{}) continue;
+    const double angle = angle_between(stored, normals[e]) * kDegreesPerRadian;
+    angles.push_back(static_cast<float>(std::fmin(angle, 180 - angle)));
+  }
+  return median(angles);
+}
+
 AuthoredWeighting find_authored_weighting(const GltfShading& shading, std::size_t most) {
   const std::size_t vertices = shading.set.topology.vertex_count();
   const auto normal_of = [&](std::size_t v) {

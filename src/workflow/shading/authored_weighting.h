@@ -84,6 +84,16 @@ struct ShadedKeyframe {
     const Topology& topology, const NormalGroups& groups, std::size_t keyframes,
     const std::function<std::optional<ShadedKeyframe>(std::size_t keyframe)>& read);
 
+/// The largest median angle, in degrees, at which stored normals count as normals of a surface. Normals in random
+/// directions have a median of 60 degrees.
+inline constexpr double kLargestMedian = 45;
+
+/// Returns the median angle, in degrees, between the stored normals of corners and the area-weighted normals of their
+/// elements. An element counts once, with the normal of its first corner. Opposite normals have the angle 0, since an
+/// author may show either side of a surface. Returns 0 if there is nothing to compare.
+[[nodiscard]] double median_angle(const Topology& topology, VectorView<const float> positions,
+                                  const NormalGroups& groups, VectorView<const float> normal_of_corner);
+
 /// Compares the base normals of a mesh with the normals of all weightings of faces. The groups of the mesh must have
 /// their corners. If the mesh has no base normals, the detected weighting is area. If there are more than `most`
 /// normals, compares only `most` of them, evenly spaced.

@@ -506,6 +506,45 @@ TEST(BakeSequence, elements_without_area_show_something_and_are_counted) {
     EXPECT_EQ(glb.normal(v, glb.weights(0.5)), (ShownGlb::Point{0, 0, 1}));
 }
 
+TEST(BakeSequence, normals_that_have_nothing_to_do_with_the_surface_are_ignored) {
+  constexpr std::uint64_t kSeed = 139;
+  std::printf("seed %d\n", static_cast<int>(kSeed));
+  Random random(kSeed);
+  const Motion motion = wandering(fixtures::icosphere(2), 3, 0.02, kSeed);
+  std::vector<std::array<double, 3>> any(motion.topology.vertex_count());
+  for (auto& direction : any)
+    for (double& c : direction) c = random.uniform(-1, 1);
+  const auto bake_with = [&](const auto& normal_of_vertex, BakeEncoding encoding, SequenceBake& baked) {
+    std::vector<float> normals;
+    for (const std::uint32_t v : motion.topology.corners())
+      for (const double c : normal_of_vertex(v)) normals.push_back(static_cast<float>(c));
+    BakeOptions options{.encoding = encoding, .viewers = kAddingUp};
+    options.normal_of_corner = VectorView<const float>::packed(normals.data(), normals.size() / 3);
+    return bake(motion, options, &baked);
+  };
+  const auto at_keyframe_0 = [&](std::size_t v, double sign) {
+    const float* const p = motion.keyframes[0].positions.data() + 3 * v;  // on a sphere around the origin
+    return std::array<double, 3>{sign * double{p[0]}, sign * double{p[1]}, sign * double{p[2]}};
+  };
+  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kHarmless, BakeEncoding::kKeys}) {
+    SequenceBake plain, foreign;
+    const std::string without = bake(motion, {.encoding = encoding, .viewers = kAddingUp}, &plain);
+    const std::string file = bake_with([&](std::size_t v) { return any[v]; }, encoding, foreign);
+    EXPECT_FALSE(foreign.has_offsets);
+    ASSERT_EQ(foreign.warnings.size(), plain.warnings.size() + 1);
+    EXPECT_NE(foreign.warnings[0].find("check that the cache belongs to this mesh"), std::string::npos);
+    EXPECT_TRUE(file == without);
+    // Normals of the surface are kept, on either side of it.
+    for (const double sign : {1.0, -1.0}) {
+      SequenceBake own;
+      (void)bake_with([&](std::size_t v) { return at_keyframe_0(v, sign); }, encoding, own);
+      EXPECT_EQ(own.has_offsets, encoding != BakeEncoding::kKeys);
+      for (const std::string& warning : own.warnings)
+        EXPECT_EQ(warning.find("check that the cache"), std::string::npos) << warning;
+    }
+  }
+}
+
 TEST(BakeSequence, rigid_translation_needs_no_extra_targets) {
   Motion motion = wandering(fixtures::icosphere(1), 3, 0, 9);
   for (float& c : motion.keyframes[0].positions) c = std::round(c * 1024) / 1024;

@@ -47,6 +47,27 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
+// Makes the groups, and leaves the stored normals out of the options, with a warning, if they have nothing to do with
+// the surface at keyframe 0. For example, the normals of a mesh do not fit a cache with another order of vertices.
+Result<NormalGroups> groups_without_foreign(MotionStream& stream, BakeOptions& options,
+                                            std::vector<std::string>& warnings) {
+  Result<NormalGroups> groups = groups_of(stream, options);
+  if (!groups || options.normal_of_corner.count == 0) return groups;
+  if (const Status status = stream.hold(0, 0); !status) return status.error();
+  const std::vector<float>& base = stream.motion().keyframes[0].positions;
+  const double angle =
+      median_angle(stream.motion().topology, VectorView<const float>::packed(base.data(), base.size() / 3),
+                   groups.value(), options.normal_of_corner);
+  if (!(angle > kLargestMedian)) return groups;
+  warnings.push_back(
+      "the stored normals differ from the surface by " + with_decimals(angle, 1) +
+      " degrees in the median, so they do not belong to it and are ignored; check that the cache belongs to this " +
+      "mesh");
+  options.normal_of_corner = {};
+  options.normals_of_keyframe = {};
+  return groups_of(stream, options);
+}
+
 // Returns the weighting that the stored normals clearly follow, for a bake whose options give no weighting. Returns area
 // if there is no such weighting, or if fits of all segments to this weighting would take too much memory.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
@@ -356,7 +377,7 @@ BakeOptions for_all_viewers(const BakeOptions& asked) {
 // Bakes a sequence. Writes the arrays of the file to the spool, and in the end passes all bytes of the file to `take`.
 Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked, Spool spool,
                                  const GlbBuilder::Take& take) {
-  const BakeOptions options = for_all_viewers(asked);
+  BakeOptions options = for_all_viewers(asked);
   const Motion& motion = stream.motion();
   const BakeEncoding encoding = options.encoding.value_or(BakeEncoding::kExact);
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
@@ -370,9 +391,9 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
       return Error{ErrorCode::kUsage, "",
                    "the tolerance of --encode keys must be at least 0.001 degrees; choose a larger --tolerance"};
   }
-  const Result<NormalGroups> groups = groups_of(stream, options);
-  if (!groups) return groups.error();
   SequenceBake report;
+  const Result<NormalGroups> groups = groups_without_foreign(stream, options, report.warnings);
+  if (!groups) return groups.error();
   const bool is_authored = encoding != BakeEncoding::kKeys;
   const VectorView<const float> stored = is_authored ? options.normal_of_corner : VectorView<const float>();
   Result<SequenceNormals> made = Error{ErrorCode::kFailed, "", ""};
