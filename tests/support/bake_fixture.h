@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -33,9 +34,10 @@ struct Baked {
   }
 };
 
-[[nodiscard]] inline Baked bake_bytes(const std::string& glb, const BakeOptions& options = {}) {
+[[nodiscard]] inline Baked bake_bytes(const std::string& glb, const BakeOptions& options = {},
+                                      const GltfOptions& reading = GltfOptions{.strict = true}) {
   Baked result;
-  result.source = std::make_unique<GltfFixture>(glb);
+  result.source = std::make_unique<GltfFixture>(glb, std::nullopt, reading);
   if (!result.source->ok()) {
     result.error = result.source->error();
     return result;

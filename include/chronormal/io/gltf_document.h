@@ -177,10 +177,17 @@ struct GltfTrack {
   bool is_assembled = false;
 };
 
+/// A channel that drives all weights of a node, but that is no track, because it breaks a rule of the format.
+struct GltfUnreadTrack {
+  std::size_t node = 0, channel = 0;
+  std::optional<std::size_t> output;  ///< the accessor of the weights, if it can hold weights
+};
+
 struct GltfAnimation {
   std::string name;
   std::size_t channel_count = 0;  ///< number of channels of all kinds, including those without weights
   std::vector<GltfTrack> tracks;  ///< the channels that animate weights
+  std::vector<GltfUnreadTrack> unread;
 };
 
 /// The keys of a track. K is the number of keys, N the number of targets of the mesh.
@@ -281,6 +288,9 @@ class GltfDocument {
   /// Reads the keys of a track, which is given by the index of the animation and by the index of the track in this
   /// animation.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
+
+  /// Reads the weights of a channel that is no track. Errors: the channel has no output; numbers that cannot be read.
+  [[nodiscard]] Result<std::vector<float>> unread_weights(const GltfUnreadTrack& track) const;
 
   /// Finds an animation by its name, or else by its index. Errors: kUsage for an unknown animation, with the names of
   /// all animations.

@@ -212,6 +212,9 @@ struct BakedMesh {
   /// True if an animation drives a single weight of the mesh by KHR_animation_pointer. The mesh then gets no correction
   /// targets; a bake with the encoding kExact fails if the mesh needs any.
   bool has_lone_weight = false;
+  /// True if a channel drives the weights of the mesh by numbers that cannot be read. The mesh then gets no correction
+  /// targets either.
+  bool has_unread_track = false;
   /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
   /// normals.
   bool already_baked = false;

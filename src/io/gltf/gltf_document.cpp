@@ -187,7 +187,13 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     std::vector<std::size_t> now(tracks.size());
     std::size_t kept = 0;
     for (std::size_t t = 0; t < tracks.size(); ++t) {
-      if (!can_read_all(sources[t])) continue;
+      if (!can_read_all(sources[t])) {
+        std::vector<GltfUnreadTrack>& unread = model.animations[a].unread;
+        const bool is_known = !unread.empty() && unread.back().channel == tracks[t].channel;
+        if (!tracks[t].is_assembled && !is_known)
+          unread.push_back({tracks[t].node, tracks[t].channel, sources[t].output});
+        continue;
+      }
       now[t] = kept;
       // The earlier track with the same keys reads the same arrays, so the earlier track was kept as well.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
@@ -339,6 +345,11 @@ Result<GltfKeys> GltfDocument::keys(std::size_t animation, std::size_t track) co
   if (!values) return values.error();
   keys.values.assign(values.value().begin(), values.value().end());
   return keys;
+}
+
+Result<std::vector<float>> GltfDocument::unread_weights(const GltfUnreadTrack& track) const {
+  if (!track.output) return invalid_input(name(), "the channel has no weights; remove the channel");
+  return state_->bytes.floats(*track.output);
 }
 
 Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_index) const {

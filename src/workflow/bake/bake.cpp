@@ -258,7 +258,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   BakeOptions within = options;
   within.progress = course.of_choice();
   baked.report.has_lone_weight = find_lone_weight(document, shading.mesh, edit).has_value();
-  if (baked.report.has_lone_weight) within.most_targets = mesh.target_count;
+  baked.report.has_unread_track = find_unread_track(document, shading.mesh).has_value();
+  if (baked.report.has_lone_weight || baked.report.has_unread_track) within.most_targets = mesh.target_count;
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;

@@ -543,6 +543,54 @@ TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targe
     EXPECT_EQ(baked(with_single(pointer)).error, "") << pointer;
 }
 
+TEST(BakeTraps, tracks_that_break_a_rule_get_zeros_for_correction_targets) {
+  using Floats = std::vector<float>;
+  struct Case {
+    const char* interpolation;
+    Floats times, weights;
+    bool shares = false;  // true if the channel takes the sampler of the good animation
+  };
+  const std::vector<Case> cases = {{"CUBICSPLINE", {0}, {0, 0, 0.5F, 0.25F, 0, 0}},
+                                   {"LINEAR", {1, 0}, {0.5F, 1, 0.25F, 0}},
+                                   {"STEP", {0, 1, 2}, {0.5F, 1, 0.25F, 0}},
+                                   {"LINEAR", kTimes, {0, 0, 1, 0.25F, 0, 1}, true}};
+  for (const Case& bad : cases) {
+    GltfBuilder builder = moving_hills();
+    const std::size_t animation = bad.shares ? 0 : builder.add_animation("bad");
+    if (bad.shares)
+      builder.json["animations"][0]["channels"].push_back(Json(builder.json["animations"][0]["channels"][0]));
+    else
+      builder.add_track(animation, 0, bad.times, bad.weights, bad.interpolation);
+    const Baked result = test::bake_bytes(builder.glb(), {.encoding = BakeEncoding::kExact}, {});
+    ASSERT_EQ(result.error, "") << bad.interpolation;
+    const std::size_t targets = result.mesh()["primitives"][0]["targets"].size();
+    ASSERT_GT(targets, 2U);
+    const Floats wide = result.numbers(sampler_of(result, animation, bad.shares ? 1 : 0)["output"]);
+    ASSERT_EQ(wide.size() * 2, bad.weights.size() * targets) << bad.interpolation;
+    for (std::size_t i = 0; i < wide.size(); ++i)
+      EXPECT_EQ(wide[i], i % targets < 2 ? bad.weights[i / targets * 2 + i % targets] : 0) << bad.interpolation;
+    // The good track is the same as without the bad one.
+    const Baked good = baked(moving_hills());
+    EXPECT_EQ(result.numbers(sampler_of(result)["output"]), good.numbers(sampler_of(good)["output"]));
+  }
+}
+
+TEST(BakeTraps, a_track_that_cannot_be_extended_keeps_its_mesh_from_correction_targets) {
+  for (const std::vector<float>& weights : {std::vector<float>{0, 1, 0.5F}, {0, std::nanf(""), 1, 0.5F}}) {
+    GltfBuilder builder = moving_hills();
+    builder.add_track(builder.add_animation("bad"), 0, std::vector<float>{0, 1}, weights);
+    const Baked exact = test::bake_bytes(builder.glb(), {.encoding = BakeEncoding::kExact}, {});
+    EXPECT_NE(exact.error.find("/animations/1/channels/0"), std::string::npos) << exact.error;
+    const Baked result = test::bake_bytes(builder.glb(), {.encoding = BakeEncoding::kHarmless}, {});
+    ASSERT_EQ(result.error, "");
+    EXPECT_EQ(result.report.added_targets, 0U);
+    EXPECT_TRUE(result.report.changed);
+    EXPECT_TRUE(std::any_of(result.report.warnings.begin(), result.report.warnings.end(), [](const auto& warning) {
+      return warning.find("numbers that cannot be read") != std::string::npos;
+    }));
+  }
+}
+
 TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
   // In the animation, only one target is active at a time, with weight 0 or 1. Only the expression therefore needs
   // correction targets.

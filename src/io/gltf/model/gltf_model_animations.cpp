@@ -80,13 +80,13 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
   if (!channels || !samplers)
     return item.complain("an animation must have channels and samplers; remove it, or export the file again");
   animation.channel_count = channels->size();
-  const auto read = [&](std::size_t c) {
+  const auto read = [&](std::size_t c, Driven& driven) {
     const JsonView channel = channels->item(c);
     if (!channel.is_object()) return;
     const std::optional<JsonView> target = channel.object("target");
     if (!target) return channel.complain("target", "the channel has no target; remove the channel");
     const std::string path = target->required_text("path");
-    Driven driven = path == "pointer" ? pointed_to(*target) : Driven{};
+    if (path == "pointer") driven = pointed_to(*target);
     if (path == "weights" && target->has("node")) {
       if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) driven.nodes.push_back(*node);
     }
@@ -103,13 +103,29 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
     }
     if (!complaint_.first()) known.insert(weights);
   };
-  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) (void)understands([&] { read(c); });
+  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) {
+    Driven driven;
+    if (!understands([&] { read(c, driven); })) keep_unread(item, c, driven, animation);
+  }
   for (auto& of_node : lone) {
     std::vector<LoneWeight>& weights = of_node.second;
     std::stable_sort(weights.begin(), weights.end(),
                      [](const LoneWeight& a, const LoneWeight& b) { return a.target < b.target; });
     (void)understands([&] { assemble_track(item, of_node.first, weights, animation, sources); });
   }
+}
+
+void Parser::keep_unread(const JsonView& animation, std::size_t channel_index, const Driven& driven,
+                         GltfAnimation& result) {
+  if (driven.target || driven.nodes.empty()) return;
+  GltfUnreadTrack track{driven.nodes.front(), channel_index, std::nullopt};
+  (void)fault_of([&] {
+    const JsonView channel = animation.array("channels")->item(channel_index), samplers = *animation.array("samplers");
+    const std::optional<std::size_t> sampler = channel.required_index("sampler", samplers.size(), "samplers");
+    if (sampler && samplers.item(*sampler).is_object())
+      track.output = parse_use(samplers.item(*sampler), "output", Use::kWeights);
+  });
+  result.unread.push_back(track);
 }
 
 void Parser::parse_animation(const JsonView& item) {

@@ -136,6 +136,8 @@ class Parser {
   struct LoneWeight {
     std::size_t channel = 0, target = 0;
   };
+  /// Lists a channel that drives all weights of nodes, but that cannot be read, in `result.unread`.
+  void keep_unread(const JsonView& animation, std::size_t channel_index, const Driven& driven, GltfAnimation& result);
   void parse_track(const JsonView& animation, std::size_t channel_index, std::size_t node, GltfAnimation& result,
                    std::vector<TrackSource>& sources);
   /// Assembles the channels of single weights of a node into one track.

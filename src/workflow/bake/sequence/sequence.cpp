@@ -61,7 +61,7 @@ Result<NormalGroups> groups_without_foreign(MotionStream& stream, BakeOptions& o
   if (!(angle > kLargestMedian)) return groups;
   warnings.push_back(
       "the stored normals differ from the surface by " + with_decimals(angle, 1) +
-      " degrees in the median, so they do not belong to it and are ignored; check that the cache belongs to this " +
+      " degrees in the median, so they do not belong to it and are ignored; check that the cache belongs to this "
       "mesh");
   options.normal_of_corner = {};
   options.normals_of_keyframe = {};

@@ -154,7 +154,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   const auto warn = [&](const std::string& sentence) { warnings.push_back({label_of(mesh, baked), sentence}); };
   const std::size_t targets = mesh.target_count + baked.extras.size();
   const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
-  if (!plan.is_driven && is_harmless && baked.extras.empty() && !baked.has_lone_weight) {
+  if (!plan.is_driven && is_harmless && baked.extras.empty() && !baked.has_lone_weight && !baked.has_unread_track) {
     warn(options.is_posed ? "no animation drives the targets, and correction targets would not improve the given "
                             "poses; the normals of each target are right at weight 1"
                           : "no animation drives the targets, so the file is only right at rest and with one slider at "
@@ -174,6 +174,11 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(
         "KHR_animation_pointer drives a single weight, so the animation cannot drive correction targets, and the mesh "
         "gets none; let it drive all weights to get them");
+  }
+  if (baked.has_unread_track && (is_harmless || plan.encoding == BakeEncoding::kSmallest)) {
+    warn(
+        "an animation drives the weights by numbers that cannot be read, so they cannot be extended to correction "
+        "targets, and the mesh gets none; correct or remove this animation to get them");
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;

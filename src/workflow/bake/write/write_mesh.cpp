@@ -133,7 +133,8 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const P
     for (std::size_t k = 0; k < extras.size(); ++k)
       edit_.append(pointer, weight_text(rest.empty() ? extras[k].weight(weights) : rest[pose][k]));
   };
-  if (edit_.has(pointer_ + "/weights")) append(pointer_ + "/weights", mesh_.weights, 0);
+  // An empty list stays empty, since a list for some of the targets would not be valid.
+  if (edit_.has(pointer_ + "/weights/0")) append(pointer_ + "/weights", mesh_.weights, 0);
   for (std::size_t n = 0, pose = 0; n < document_.nodes().size(); ++n) {
     const GltfNode& node = document_.nodes()[n];
     if (node.mesh == shading_.mesh && !node.weights.empty())

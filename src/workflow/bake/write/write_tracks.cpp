@@ -79,6 +79,7 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
     std::set<std::size_t> of_tracks;
     for (const GltfTrack& track : animation.tracks)
       if (!track.is_assembled) of_tracks.insert(track.channel);
+    for (const GltfUnreadTrack& track : animation.unread) of_tracks.insert(track.channel);
     for (std::size_t c = 0; c < animation.channel_count; ++c) {
       const std::string channel = item(item("/animations", a) + "/channels", c);
       const std::string pointer = channel + "/target/extensions/KHR_animation_pointer/pointer";
@@ -91,12 +92,29 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
   return std::nullopt;
 }
 
+std::optional<std::string> find_unread_track(const GltfDocument& document, std::size_t mesh) {
+  const std::size_t targets = document.meshes()[mesh].target_count;
+  for (std::size_t a = 0; a < document.animations().size(); ++a) {
+    for (const GltfUnreadTrack& track : document.animations()[a].unread) {
+      if (document.nodes()[track.node].mesh != mesh || targets == 0) continue;
+      const Result<std::vector<float>> weights = document.unread_weights(track);
+      if (!weights || weights.value().empty() || weights.value().size() % targets != 0)
+        return item(item("/animations", a) + "/channels", track.channel);
+    }
+  }
+  return std::nullopt;
+}
+
 namespace {
 
 // Returns an error if KHR_animation_pointer drives single weights, or the weights of a mesh without a node. The weights
-// of correction targets could not be animated in such a file.
+// of correction targets could not be animated in such a file. Neither could those of a track that cannot be extended.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
+    if (const std::optional<std::string> unread = find_unread_track(document, mesh.mesh))
+      return invalid_input(std::string(document.name()).append(", ").append(*unread),
+                           "the weights that this channel drives cannot be read, so they cannot be extended to "
+                           "correction targets; remove the channel, or use another --encode");
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
     if (!pointer) continue;
     return invalid_input(std::string(document.name()).append(", ").append(*pointer),
@@ -141,7 +159,7 @@ class TrackWriter {
       std::map<std::size_t, std::vector<std::size_t>> tracks_of_mesh;
       bool is_needed = of_others.count(sampler) > 0;
       for (const std::size_t t : tracks) {
-        const std::size_t* place = mesh_driven_by(animation.tracks[t]);
+        const std::size_t* place = mesh_driven_by(animation.tracks[t].node);
         if (place == nullptr)
           is_needed = true;
         else
@@ -163,18 +181,57 @@ class TrackWriter {
         is_needed = true;
       }
     }
+    for (const GltfUnreadTrack& track : animation.unread) {
+      if (Status status = widen(track, a, appended); !status) return status;
+    }
     return Success{};
   }
 
   [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
 
  private:
-  // Returns the index in meshes_ of the mesh that a track drives. Returns nullptr if the mesh of the track is not in
+  // Returns the index in meshes_ of the mesh that a track of a node drives. Returns nullptr if the mesh is not in
   // meshes_.
-  [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
-    const GltfNode& node = document_.nodes()[track.node];
+  [[nodiscard]] const std::size_t* mesh_driven_by(std::size_t index) const {
+    const GltfNode& node = document_.nodes()[index];
     const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();
     return found == place_of_mesh_.end() ? nullptr : &found->second;
+  }
+
+  // Widens each row of a track that cannot be read by zeros, for the correction targets. Otherwise a viewer that plays
+  // the track would find the rows of later keys in other places. `appended` is the index of the next new sampler, or 0.
+  Status widen(const GltfUnreadTrack& track, std::size_t a, std::size_t& appended) {
+    const std::size_t* const place = mesh_driven_by(track.node);
+    if (place == nullptr) return Success{};
+    const Result<std::vector<float>> values = document_.unread_weights(track);
+    if (!values) return values.error();
+    const std::size_t targets = document_.meshes()[meshes_[*place].mesh].target_count,
+                      width = targets + meshes_[*place].drivers.size(), rows = values.value().size() / targets;
+    const std::string pointer = item("/animations", a), list = pointer + "/samplers";
+    const std::uint64_t bytes = std::uint64_t{sizeof(float)} * rows * width;
+    if (Status status = document_.expansion().check(edit_.added_bytes() + bytes, document_.name() + ", " + pointer);
+        !status)
+      return status;
+    std::vector<float> wide(rows * width);
+    for (std::size_t row = 0; row < rows; ++row)
+      std::copy_n(values.value().begin() + static_cast<std::ptrdiff_t>(row * targets), targets,
+                  wide.begin() + static_cast<std::ptrdiff_t>(row * width));
+    written_.bytes[*place] += sizeof(float) * rows * (width - targets);
+    const std::string output = std::to_string(edit_.add_scalars(wide, {false, true}));
+    const auto sampler_of = [&](std::size_t channel) { return item(pointer + "/channels", channel) + "/sampler"; };
+    const std::size_t sampler = index_at(edit_, sampler_of(track.channel));
+    std::size_t users = 0;
+    for (std::size_t c = 0; c < document_.animations()[a].channel_count; ++c)
+      users += edit_.has(sampler_of(c)) && index_at(edit_, sampler_of(c)) == sampler ? 1U : 0U;
+    if (users == 1) {
+      edit_.set(item(list, sampler) + "/output", output);
+      return Success{};
+    }
+    if (appended == 0) appended = size_of(edit_, list);
+    edit_.append(list, edit_.text(item(list, sampler)));
+    edit_.set(item(list, appended) + "/output", output);
+    edit_.set(sampler_of(track.channel), std::to_string(appended++));
+    return Success{};
   }
 
   Result<Sampler> extended_sampler(std::size_t a, std::size_t t, std::size_t sampler, std::size_t place) {

@@ -28,6 +28,10 @@ struct GrownMesh {
 [[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
                                                           const GltfEdit& edit);
 
+/// Finds a channel that drives all weights of the mesh, but that is no track, and whose numbers cannot be extended to
+/// more targets. Returns the JSON pointer of the channel, or nothing if there is no such channel.
+[[nodiscard]] std::optional<std::string> find_unread_track(const GltfDocument& document, std::size_t mesh);
+
 struct WrittenTracks {
   /// For each mesh, a bound of the angle, in radians, by which errors of correction targets' weights turn normals.
   std::vector<double> errors;
@@ -35,7 +39,8 @@ struct WrittenTracks {
   std::size_t converted = 0;       ///< the number of tracks that became cubic splines
 };
 
-/// Extends all tracks that drive these meshes, in all animations. Cubic splines get more keys until the errors of
+/// Extends all tracks that drive these meshes, in all animations, also those that break a rule of the format and are
+/// not read: correction targets get the weight 0 in them. Cubic splines get more keys until the errors of
 /// correction targets' weights turn no normal by more than tolerance (radians). Errors: those of reading tracks from
 /// the document; kInvalidInput if an extension drives weights of any of these meshes.
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
