@@ -6,6 +6,12 @@ import { formulasOf, markOf, weightOf } from './drive.js';
 // The scenes that are driven. The key of an entry is a scene, and its value is {observer, driven}.
 const attached = new WeakMap();
 
+// Throws an error if a value is not a scene of Babylon.js. A caller may have passed a container of assets instead.
+function demandScene(scene) {
+  if (Array.isArray(scene?.meshes) && typeof scene.onBeforeRenderObservable?.add === 'function') return;
+  throw new TypeError('attach() needs the scene of Babylon.js that shows the meshes, not a mesh or the result of a loader');
+}
+
 // Returns an entry for each MorphTargetManager to drive, with the meshes that use the manager. The weights belong to
 // the manager, which a mesh and its clones share.
 function drivenOf(scene) {
@@ -30,6 +36,7 @@ function drivenOf(scene) {
  * @returns {import('@babylonjs/core').AbstractMesh[]} the meshes that have correction targets with formulas
  */
 export function attach(scene) {
+  demandScene(scene);
   if (attached.has(scene)) scene.onBeforeRenderObservable.remove(attached.get(scene).observer);
   const driven = drivenOf(scene);
   const observer = scene.onBeforeRenderObservable.add(() => {

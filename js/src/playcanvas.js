@@ -6,6 +6,18 @@ import { formulasOf, markOf, weightOf } from './drive.js';
 // The applications that are driven. The key of an entry is an application, and its value is {update, driven}.
 const attached = new WeakMap();
 
+// Throws an error if a value is not an application of PlayCanvas.
+function demandApplication(app) {
+  if (typeof app?.root?.findComponents === 'function' && typeof app.on === 'function') return;
+  throw new TypeError('attach() needs the application of PlayCanvas as its first argument');
+}
+
+// Throws an error if a value is not a loaded container of PlayCanvas.
+function demandContainer(asset) {
+  if (asset?.resource?.data?.gltf && Array.isArray(asset.resource.data.renders)) return;
+  throw new TypeError('attach() needs loaded assets of PlayCanvas of the type container after the application; call it after the assets are ready');
+}
+
 // Returns the mark (extras.chronormal) of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the
 // file.
 function marksOf({ gltf, renders }) {
@@ -28,6 +40,8 @@ function marksOf({ gltf, renders }) {
  * @returns {import('playcanvas').MeshInstance[]} the meshes that have correction targets with formulas
  */
 export function attach(app, ...assets) {
+  demandApplication(app);
+  assets.forEach(demandContainer);
   if (attached.has(app)) app.off('prerender', attached.get(app).update);
   const marks = new Map(assets.flatMap(({ resource }) => [...marksOf(resource.data)]));
   const driven = [...(attached.get(app)?.driven ?? [])].filter(({ meshInstance }) => !marks.has(meshInstance.mesh));

@@ -6,6 +6,13 @@ import { drive as driveBy, formulasOf, markOf } from './drive.js';
 // own onBeforeRender() of the mesh before attach(), and `now` is the function that attach() has put in its place.
 const attached = new WeakMap();
 
+// Throws an error if a value is not an object of three.js. A caller may have passed the result of a loader instead.
+function demandObject(name, root) {
+  if (typeof root?.traverse === 'function') return;
+  const hint = typeof root?.scene?.traverse === 'function' ? '; the result of a loader is no object: pass its member scene, as gltf.scene' : '';
+  throw new TypeError(`${name}() needs an Object3D of three.js${hint}`);
+}
+
 function formulasOfMesh(mesh) {
   const w = mesh.morphTargetInfluences;
   return w ? formulasOf(markOf(mesh, ({ userData }) => userData), w.length) : [];
@@ -19,6 +26,7 @@ function formulasOfMesh(mesh) {
  * @returns {import('three').Mesh[]} the meshes that have correction targets with formulas
  */
 export function attach(root) {
+  demandObject('attach', root);
   const meshes = [];
   root.traverse((mesh) => {
     const formulas = attached.get(mesh)?.formulas ?? formulasOfMesh(mesh);
@@ -38,6 +46,7 @@ export function attach(root) {
 
 /** Stops driving the meshes below an object, and sets the weights of their correction targets to 0. */
 export function detach(root) {
+  demandObject('detach', root);
   root.traverse((mesh) => {
     if (!attached.has(mesh)) return;
     const { formulas, before, now } = attached.get(mesh);
@@ -58,5 +67,6 @@ export function detach(root) {
  * @param {import('three').Object3D} root
  */
 export function drive(root) {
+  demandObject('drive', root);
   root.traverse((mesh) => driveBy(attached.get(mesh)?.formulas ?? formulasOfMesh(mesh), mesh.morphTargetInfluences));
 }

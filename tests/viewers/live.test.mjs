@@ -17,6 +17,7 @@ import * as THREE from 'three';
 import { clone as cloneWithSkeletons } from 'three/addons/utils/SkeletonUtils.js';
 import * as babylon from '../../js/src/babylon.js';
 import { drive, formulasOf } from '../../js/src/drive.js';
+import * as playcanvas from '../../js/src/playcanvas.js';
 import * as three from '../../js/src/three.js';
 
 // Returns what a bake writes into the extras of a mesh. Targets 0 and 1 are the author's. Targets 2 and 3 have the
@@ -190,6 +191,26 @@ describe('three.js', () => {
       assert.deepEqual(weightsOf(mesh), Array(count).fill(0));
     }
   });
+});
+
+test('an argument of another kind is refused by a TypeError that names the kind that is needed', () => {
+  const root = new THREE.Group(), app = { root: { findComponents: () => [] }, on() {}, off() {} };
+  for (const name of ['attach', 'detach', 'drive']) {
+    for (const wrong of [undefined, null, {}, new THREE.BoxGeometry()]) {
+      assert.throws(() => three[name](wrong), { name: 'TypeError', message: `${name}() needs an Object3D of three.js` });
+    }
+    // A GLTFLoader returns such an object.
+    assert.throws(() => three[name]({ scene: root, animations: [] }), { name: 'TypeError', message: /pass its member scene, as gltf\.scene$/ });
+    three[name](root);
+  }
+  for (const wrong of [undefined, null, {}, root, { meshes: [] }]) {
+    assert.throws(() => babylon.attach(wrong), { name: 'TypeError', message: /^attach\(\) needs the scene of Babylon\.js/ });
+    assert.throws(() => playcanvas.attach(wrong), { name: 'TypeError', message: /^attach\(\) needs the application of PlayCanvas/ });
+  }
+  for (const wrong of [undefined, null, {}, { resource: null }, { resource: {} }, { resource: { data: {} } }]) {
+    assert.throws(() => playcanvas.attach(app, wrong), { name: 'TypeError', message: /^attach\(\) needs loaded assets of PlayCanvas/ });
+  }
+  assert.deepEqual(playcanvas.attach(app), []);
 });
 
 describe('Babylon.js', () => {
