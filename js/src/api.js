@@ -55,11 +55,19 @@ async function inWorker(platform, task, { signal, onProgress }) {
   });
 }
 
+// Adds to the message about a missing file how a call names this file. The program looks for files in its folder, which
+// a caller does not see.
+const withRemedy = (line) => line.replace(/(: this file is missing: )(?:\.\/)?(.+)$/, (_, words, name) =>
+  `${words}${name}; give its bytes in the option resources: { ${JSON.stringify(name)}: bytes }`);
+
+// Returns the message of an error: the lines of the program without its name, each line once.
+const messageOf = (stderr) => [...new Set(stderr.split('\n').map((line) => withRemedy(line.replace(/^chronormal(?: \w+)?: /, ''))))].join('\n');
+
 async function execute(platform, task, options) {
   options.signal?.throwIfAborted();
   const done = await (options.worker === false ? perform(platform, task, options.onProgress) : inWorker(platform, task, options));
   if (done.code !== DONE && done.code !== BEYOND) {
-    throw new ChronormalError(done.code, done.stderr.replace(/^chronormal(?: \w+)?: /, ''));
+    throw new ChronormalError(done.code, messageOf(done.stderr));
   }
   return done;
 }
@@ -113,9 +121,11 @@ export function apiOf(platform) {
       return { bytes, files, ...resultOf(done) };
     },
     async sample(input, options = {}) {
-      const { files, stderr } = await execute(platform, taskOf('sample', input, options, (outputs) => ['-o', `${outputs}/normals.npy`]), options);
+      const task = taskOf('sample', input, options, (outputs) => ['-o', `${outputs}/normals.npy`]);
+      const { files, stderr } = await execute(platform, task, options);
       const { numbers, shape } = readNpy(files['normals.npy']);
-      return { normals: numbers, shape, warnings: warningsOf(stderr) };
+      // Leaves out the line with the name of the file inside the program, which says nothing to the caller.
+      return { normals: numbers, shape, warnings: warningsOf(stderr).filter((line) => !line.startsWith(`-> ${task.outputs}/`)) };
     },
   };
 }

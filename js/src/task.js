@@ -4,6 +4,8 @@ import { run } from './run.js';
 
 const FOLDER = '/work';
 const USAGE = 2; // the exit code of the program for a wrong call
+// The last line of a message about a wrong call. It names a command line, which a caller of a function does not have.
+const TRY = /(^|\n)Try: chronormal[^\n]* --help$/;
 const BAR = /\r([^\r[]*) \[[= ]*\]\s+(\d+) %/g;
 
 class UnusableName extends Error {}
@@ -79,5 +81,5 @@ export async function perform(platform, { args, files, outputs, memoryLimit }, o
   }
   const whole = new Uint8Array(stdout.reduce((size, bytes) => size + bytes.length, 0));
   stdout.reduce((at, bytes) => (whole.set(bytes, at), at + bytes.length), 0);
-  return { code: ended.code, stdout: new TextDecoder().decode(whole), stderr: stderr.trim(), files: ended.result };
+  return { code: ended.code, stdout: new TextDecoder().decode(whole), stderr: stderr.trim().replace(TRY, ''), files: ended.result };
 }

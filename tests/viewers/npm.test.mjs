@@ -129,6 +129,31 @@ test('sampled normals are those that the command line writes', async () => {
   await assert.rejects(sample(face, { weights: [] }), TypeError);
 });
 
+test('a sample has no warnings about files that the caller does not see', async () => {
+  const weights = [Array(12).fill(0.5)]; // bumps has 12 targets
+  for (const worker of [true, false]) {
+    for (const name of ['a.glb', 'out/a.glb']) assert.deepEqual((await sample(face, { weights, name, worker })).warnings, [], name);
+  }
+});
+
+test('a message to a program says neither what to type nor where the module keeps its files', async () => {
+  for (const worker of [true, false]) {
+    const { code, message } = await audit(face, { samples: -1, worker }).catch((error) => error);
+    assert.equal(code, 2, message);
+    assert.match(message, /^--samples: /);
+    assert.doesNotMatch(message, /Try:|--help/);
+    const gltf = (uri) => new TextEncoder().encode(JSON.stringify({
+      asset: { version: '2.0' }, buffers: [{ uri, byteLength: 36 }], bufferViews: [{ buffer: 0, byteLength: 36 }],
+      accessors: [{ bufferView: 0, componentType: 5126, type: 'VEC3', count: 3 }], meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    }));
+    for (const [uri, name] of [['a.bin', 'a.bin'], ['b/c%20d.bin', 'b/c d.bin']]) {
+      const message = `input.gltf, /buffers/0/uri: this file is missing: ${name}; give its bytes in the option resources: { "${name}": bytes }`;
+      await assert.rejects(inspect(gltf(uri), { worker }), { name: 'ChronormalError', code: 3, message });
+      assert.equal((await inspect(gltf(uri), { resources: { [name]: new Uint8Array(36) }, worker })).report.command, 'inspect');
+    }
+  }
+});
+
 test('wrong input is refused in the words of the program, and the next call works', async () => {
   await assert.rejects(bake(face.slice(0, 100), { name: 'cut.glb' }), (error) => {
     assert.ok(error instanceof ChronormalError);
