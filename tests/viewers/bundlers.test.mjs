@@ -136,7 +136,7 @@ test('webpack builds it, without a warning', async () => {
 
 test('esbuild builds it by the command of the README', async () => {
   const root = makeApp('esbuild');
-  const [, words] = readme.match(/^    esbuild (.*)$/m);
+  const [, words] = readme.match(/^esbuild (.*)$/m);
   const { status, stderr } = spawnSync(process.execPath, [ofViewers('esbuild/bin/esbuild'), ...words.split(' ')], { cwd: root, encoding: 'utf8' });
   assert.equal(status, 0, stderr);
   assert.doesNotMatch(stderr, /warning/i);

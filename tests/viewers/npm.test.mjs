@@ -362,6 +362,13 @@ test('messages name the kind of a file, and have no long fractions', async () =>
   assert.doesNotMatch(warnings.join(), /\d\.\d{8}/);
 });
 
+test('the picture of the README is found beside the README, in the package and in a checkout', () => {
+  const source = new URL('../../js/README.md', import.meta.url), picturesOf = (text) => [...text.matchAll(/!\[[^\]]*\]\(([^)]*)\)/g)].map(([, to]) => to);
+  const [there, here] = [picturesOf(readme), picturesOf(readFileSync(source, 'utf8'))];
+  assert.ok(here.length >= 1);
+  assert.deepEqual(there.map((to) => readFileSync(join(installed, to))), here.map((to) => readFileSync(new URL(to, source))));
+});
+
 test('the package says where it is at home', () => {
   const { homepage, repository, bugs, sideEffects } = JSON.parse(readFileSync(join(installed, 'package.json')));
   const home = readFileSync(new URL('../../CMakeLists.txt', import.meta.url), 'utf8').match(/HOMEPAGE_URL (\S+)\)/)[1];

@@ -61,8 +61,6 @@ def navigation():
 def add_navigation(app, page, source):
     if page == root_doc:
         source[0] += "\n\n" + navigation() + "\n"
-    elif page == "js/README":  # the npm package gets this picture when it is made
-        source[0] = source[0].replace("](head.png)", "](../docs/pictures/head.png)")
     elif page == "docs/decisions/README":
         entries = sorted(path.stem for path in (ROOT / "docs/decisions").glob("0*.md"))
         source[0] += "\n\n" + "\n".join(["```{toctree}", ":hidden:", "", *entries, "```"]) + "\n"
