@@ -209,6 +209,18 @@ export function writeStill(path, { parts, weights = null }) {
   return writeFile(path, { primitives, weights });
 }
 
+// Writes a tube on which a bump grows around an angle, and inside it a thinner tube with a steeper bump, which is
+// invisible from outside. The target has no normals, so both bumps have errors, and the inner bump has the worst error.
+export function writeBump(path, angle, name) {
+  const bumpOf = (at, height, width) => (a, y) => height * Math.exp(-((2 - 2 * Math.cos(a - at)) + y * y) / width ** 2);
+  const tubeOf = (radius, bump) => {
+    const place = (more) => (a, y) => [(radius + more(a, y)) * Math.cos(a), y, (radius + more(a, y)) * Math.sin(a)];
+    return primitiveOf(grid, place(() => 0), [place(bump)], { targetNormals: false });
+  };
+  const primitives = [tubeOf(0.55, bumpOf(angle, 0.3, 0.5)), tubeOf(0.15, bumpOf(angle + 2, 0.16, 0.16))];
+  return writeFile(path, { primitives, names: [name], tracks: [linear([0, 1])] });
+}
+
 // Returns the keyframes of a sequence, each as the text of an OBJ file.
 export function sequenceFrames() {
   return [straight, twisted(1.6), waved].map((place) => {

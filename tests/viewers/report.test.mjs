@@ -18,7 +18,7 @@ import { makePlayer } from '../../web/src/player.js';
 import { ExactNormals, exactPositions } from './exact.mjs';
 import { writeAuthored } from './authored.mjs';
 import { assertSameFigure, assertShown, figureByProgram } from './figures.mjs';
-import { writeStill } from './fixtures.mjs';
+import { writeBump, writeStill } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { read } from './reader.mjs';
 import { randomNumbers } from './random.mjs';
@@ -236,6 +236,49 @@ describe('in Chromium', () => {
     assert.match(await page.$eval('.face [role=status]', (box) => box.textContent), /none for face 7/);
     await page.click('.face .acts:not(p) button');
     await assertShown(page, figures[0]);
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('tables, labels and menus fit at usual widths', async () => {
+    const { page } = pages, { width, height } = page.viewport();
+    await writeBump(path('bump.glb'), 1, 'animation KeyAction');
+    chronormal('report', path('bump.glb'), '--for', 'all,gltfpack,quantize,meshopt', '--force', '-q', '-o', path('tables.html'), '--template', template);
+    await pages.show(path('tables.html'));
+    await page.evaluate(() => {
+      for (const panel of document.querySelectorAll('details.panel:not(.face)')) panel.open = true;
+      for (const row of document.querySelectorAll('[aria-label="Errors in each viewer"] tbody tr')) [...row.cells].slice(1).forEach((cell, i) => (cell.textContent = i < 3 ? '180.0°' : '1,234'));
+    });
+    for (const wide of [821, 1000, 1280, 1400]) {
+      await page.setViewport({ width: wide, height });
+      const tables = await page.$$eval('.scrolled', (boxes) => boxes.map(({ scrollWidth, clientWidth }) => [scrollWidth, clientWidth]));
+      assert.equal(tables.length, 2);
+      for (const [needed, given] of tables) assert.ok(needed <= given, `${needed} of ${given} pixels at ${wide}`);
+      const [needed, given] = await page.$eval('select[aria-label=motion]', (menu) => {
+        const pen = document.createElement('canvas').getContext('2d'), style = getComputedStyle(menu), ARROW = 24;
+        pen.font = style.font;
+        return [pen.measureText(menu.selectedOptions[0].text).width, menu.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - ARROW];
+      });
+      assert.ok(needed <= given, `${needed} of ${given} pixels of the menu at ${wide}`);
+    }
+    await pages.show(pageOf('twist', '--sample', 'twist'));
+    for (const wide of [600, 800, 1280]) {
+      await page.setViewport({ width: wide, height });
+      for (const layout of ['side', 'wipe']) {
+        await page.evaluate((name) => {
+          const { view, setLayout } = globalThis.chronormal;
+          setLayout(name);
+          view.draw();
+        }, layout);
+        const [left, right, stage] = await page.evaluate(() => [...document.querySelectorAll('.stage .label'), document.querySelector('.stage')].map((box) => {
+          const { left, right, top } = box.getBoundingClientRect();
+          return { left, right, top, isCut: box.scrollWidth > box.clientWidth };
+        }));
+        assert.deepEqual([left.isCut, right.isCut], [false, false], `${layout} at ${wide}`);
+        const end = left.top < right.top ? stage.right : right.left - 8;
+        assert.ok(left.right <= end - 8 + 1, `${layout} at ${wide}: ${left.right} of ${end}`);
+      }
+    }
+    await page.setViewport({ width, height });
     assert.deepEqual(pages.faults, []);
   });
 

@@ -7,7 +7,7 @@ import { SCHEMES } from './schemes.js';
 const count = (n) => n.toLocaleString('en');
 export const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
 const select = (label, options, value, onChoose) => {
-  const box = h('select', { 'aria-label': label, onchange: () => onChoose(box.value) },
+  const box = h('select', { 'aria-label': label, title: options.find(([key]) => String(key) === String(value))?.[1] ?? '', onchange: () => onChoose(box.value) },
     options.map(([key, text]) => h('option', { value: key, selected: String(key) === String(value) }, text)));
   return h('label', { className: 'field' }, h('span', {}, label), box);
 };
@@ -18,7 +18,9 @@ const viewerTitle = (report, name) =>
 /** Returns the label above the picture, which says how the normals in the picture are rendered. */
 export const shownBy = (report, player) => {
   if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As rendered, with normals interpolated between keyframes' : `As rendered by ${player.scheme}`;
-  return player.viewer === 'specification' ? 'As rendered' : `As rendered by ${viewerTitle(report, player.viewer)}`;
+  if (player.viewer === 'specification') return 'As rendered';
+  const title = viewerTitle(report, player.viewer);
+  return title.startsWith('after ') ? `As rendered ${title}` : `As rendered by ${title}`;
 };
 
 /** Makes the menus that choose the part, the motion, and for a glTF file the viewer. */

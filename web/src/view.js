@@ -8,6 +8,8 @@ import { meet } from './pick.js';
 
 const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 
+const MARGIN = 8; // pixels between a label and the edges of its side (style.css)
+const LEAST_LABEL = 90; // pixels: a narrower side has no label
 const FLIGHT = 600; // milliseconds that the camera takes to fly to a place
 const ease = (x) => x * x * (3 - 2 * x);
 const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -111,8 +113,8 @@ export function makeView(stage, onPoint, onPick) {
       uniforms.mode.value = view.mode === 'error' && side === 0 ? LIT : MODES[view.mode];
       if (clip.width > 0) renderer.render(scene, camera);
       place(markers[side], pane);
-      Object.assign(labels[side].style, { left: `${clip.x}px`, top: `${clip.y}px`, maxWidth: `${clip.width}px` });
-      labels[side].hidden = clip.width < 40;
+      Object.assign(labels[side].style, { left: `${clip.x}px`, top: `${clip.y}px`, maxWidth: `${clip.width - 2 * MARGIN}px` });
+      labels[side].hidden = clip.width < LEAST_LABEL;
     });
     handle.hidden = view.layout !== 'wipe';
     handle.style.left = `${Math.round(view.wipe * stage.clientWidth)}px`;
