@@ -282,6 +282,24 @@ describe('in Chromium', () => {
     assert.deepEqual(pages.faults, []);
   });
 
+  test('the candidates of a bake have different names, and the headline says what an average is', async () => {
+    const { page } = pages;
+    chronormal('report', path('authored.glb'), '--force', '-q', '-o', path('tables.html'), '--template', template);
+    chronormal('report', path('authored.glb'), '--force', '-q', '-o', path('tables.bin'));
+    const { plan, audit } = readContainer(readFileSync(path('tables.bin'))), [{ candidates }] = plan.meshes;
+    await pages.show(path('tables.html'));
+    const names = await page.$$eval('[aria-label="Candidates of a bake"] tbody td:first-child', (cells) => cells.map(({ textContent }) => textContent.replace(/^✓\s/, '')));
+    assert.equal(new Set(names.slice(0, candidates.length)).size, candidates.length, names.join());
+    const titles = { three: 'three.js', godot: 'Godot 4' };
+    const notes = (await page.$$eval('.panel .note', (boxes) => boxes.map(({ textContent }) => textContent))).join('\n');
+    for (const { viewer, named } of candidates[0].viewers.filter(({ viewer }) => viewer in titles)) {
+      assert.match(notes, new RegExp(`${named ? 'in the worst of these viewers' : 'the worst of the other viewers'}: [^.]*${titles[viewer]}`));
+    }
+    const words = await page.$eval('.verdict', ({ textContent }) => textContent);
+    assert.equal(/edges are torn on average\.$/.test(words), audit.torn_edges[0] >= 0.05, words);
+    assert.doesNotMatch(words, /torn\.$/);
+  });
+
   test('a page whose data are damaged says so', async () => {
     const whole = readFileSync(pageOf('bumps', path('bumps.glb')), 'utf8'), random = randomNumbers(SEED);
     for (let i = 0; i < 8; ++i) {

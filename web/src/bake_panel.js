@@ -1,12 +1,7 @@
 // Shows the panel of a bake: the viewers to bake for, the tolerance, the limits of size, the plan, and the bake itself.
 import { degreesText } from './colors.js';
 import { h, panel, table } from './dom.js';
-import { choiceTable } from './panels.js';
-
-const VIEWERS = [
-  ['three', 'three.js'], ['babylon', 'Babylon.js'], ['playcanvas', 'PlayCanvas'], ['godot', 'Godot 4'], ['filament', 'Filament'], ['bevy', 'Bevy'],
-  ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
-];
+import { VIEWERS, choiceTable } from './panels.js';
 
 /** The viewers that add up deltas. If the user chooses no viewers, the file is baked for these viewers. */
 const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];

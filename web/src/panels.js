@@ -4,6 +4,12 @@ import { degreesText } from './colors.js';
 import { momentOf, nameOf, worstSample } from './motions.js';
 import { SCHEMES } from './schemes.js';
 
+/** The viewers that a bake can consider, with their names for people. */
+export const VIEWERS = [
+  ['three', 'three.js'], ['babylon', 'Babylon.js'], ['playcanvas', 'PlayCanvas'], ['godot', 'Godot 4'], ['filament', 'Filament'], ['bevy', 'Bevy'],
+  ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
+];
+
 const count = (n) => n.toLocaleString('en');
 export const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
 const select = (label, options, value, onChoose) => {
@@ -119,19 +125,45 @@ export function viewerTable({ audit }) {
     h('p', { className: 'note' }, TORN));
 }
 
+// Returns the largest average error of a candidate in the viewers that the bake is not for, in degrees; undefined if
+// there is no such viewer. The errors are those over the animations of the file, or else over the other poses.
+function errorElsewhere({ viewers = [] }) {
+  const means = viewers.filter(({ named }) => !named).flatMap(({ file, posed, alone }) => (file ? [file] : [posed, alone]).map((poses) => poses?.after.mean_degrees));
+  const known = means.filter((mean) => mean >= 0);
+  return known.length > 0 ? Math.max(...known) : undefined;
+}
+
+// Returns a name for each candidate of a mesh. Candidates of one kind have different deltas, and are numbered.
+function namesOf(candidates) {
+  const kinds = candidates.map(({ name, animations_only: only }) => (only ? `${name}, animations only` : name));
+  return kinds.map((kind, i) => (kinds.indexOf(kind) === kinds.lastIndexOf(kind) ? kind : `${kind}\u00a0${kinds.slice(0, i + 1).filter((other) => other === kind).length}`));
+}
+
 /** Makes a table of the size and errors of each candidate of a bake, like `bake --plan`. */
 export function choiceTable({ plan, plan_message: message }) {
   if (!plan) return message ? panel('What a bake would write', false, h('p', { className: 'note' }, message)) : null;
-  const tables = plan.meshes.filter(({ candidates }) => candidates?.length).map(({ mesh, name, candidates }) => {
-    const rows = candidates.map(({ name: form, targets, bytes, played, chosen }) => ({
+  const meshes = plan.meshes.filter(({ candidates }) => candidates?.length), all = meshes.flatMap(({ candidates }) => candidates);
+  if (all.length === 0) return null;
+  const hasElsewhere = all.some((candidate) => errorElsewhere(candidate) !== undefined);
+  const titles = ['candidate', 'targets ', 'bytes added ', 'average ', 'worst ', ...(hasElsewhere ? ['else\u00adwhere '] : [])];
+  const tables = meshes.map(({ mesh, name, candidates }) => {
+    const names = namesOf(candidates);
+    const rows = candidates.map(({ targets, bytes, played, chosen, ...candidate }, i) => ({
       className: chosen ? 'chosen' : '',
-      cells: [chosen ? `✓ ${form}` : form, count(targets), count(bytes), degreesText(played?.mean_degrees), degreesText(played?.worst_degrees)],
+      cells: [chosen ? `✓\u00a0${names[i]}` : names[i], count(targets), count(bytes), degreesText(played?.mean_degrees), degreesText(played?.worst_degrees),
+        ...(hasElsewhere ? [degreesText(errorElsewhere(candidate))] : [])],
     }));
-    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Candidates of a bake', ['candidate', 'targets ', 'bytes added ', 'average ', 'worst '], rows)];
+    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Candidates of a bake', titles, rows)];
   });
-  if (tables.length === 0) return null;
-  return panel('What a bake would write', false, tables,
-    h('p', { className: 'note' }, 'Errors are in degrees, over the animations of the file. Bake writes the marked candidate.'));
+  const { viewers = [] } = all[0], titlesOf = (named) => viewers.filter((viewer) => viewer.named === named).map(({ viewer }) => new Map(VIEWERS).get(viewer) ?? viewer).join(', ');
+  const poses = viewers.some(({ file }) => file) ? 'over the animations of the file' : 'over each target alone and the poses that were given';
+  const sentences = [
+    `Errors are in degrees, ${poses}${viewers.length > 0 ? `, in the worst of these viewers: ${titlesOf(true)}` : ''}. Bake writes the marked candidate.`,
+    hasElsewhere && `The column elsewhere has the average error in the worst of the other viewers: ${titlesOf(false)}.`,
+    meshes.some(({ candidates }) => namesOf(candidates).some((name, i) => /\u00a0\d+$/.test(name) && name !== candidates[i].name)) &&
+      'Candidates of one kind are numbered in the order in which bake made them; their deltas differ.',
+  ];
+  return panel('What a bake would write', false, tables, sentences.filter(Boolean).map((sentence) => h('p', { className: 'note' }, sentence)));
 }
 
 /** Makes a table of the errors of each scheme on this motion. A click on a scheme shows its normals. */
@@ -158,6 +190,6 @@ export function verdict({ audit }) {
     return `At some moment, the normals of the faces around ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel each other, so no normal is right there. All others are right within ${degreesText(worst)}.`;
   }
   if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
-  const torn = tornText(audit);
-  return `Normals have errors of ${degreesText(mean)} on average and of up to ${degreesText(worst)} while this moves${torn && torn !== '0' ? `, and ${torn} edges are torn` : ''}.`;
+  const torn = audit.torn_edges?.[0] >= 0.05 ? `, and ${tornText(audit)} edges are torn on average` : '';
+  return `Normals have errors of ${degreesText(mean)} on average and of up to ${degreesText(worst)} while this moves${torn}.`;
 }
