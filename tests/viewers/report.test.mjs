@@ -239,6 +239,27 @@ describe('in Chromium', () => {
     assert.deepEqual(pages.faults, []);
   });
 
+  test(`a report opens at an error that is visible, for bumps at angles of the seed ${SEED}`, async () => {
+    const { page } = pages, random = randomNumbers(SEED);
+    for (let i = 0; i < 6; ++i) {
+      const angle = 2 * Math.PI * random();
+      await writeBump(path('bump.glb'), angle);
+      const { worst } = dataOf('bump', path('bump.glb'));
+      assert.match(worst[0].label, /primitive 1/, 'the worst place is inside');
+      await pages.show(pageOf('bump', path('bump.glb')));
+      await page.waitForSelector('.marker:not([hidden])');
+      const [box, shown, className] = await page.$eval('.marker', (marker) => [marker.getBoundingClientRect().toJSON(), marker.textContent, marker.className]);
+      assert.equal(className, 'marker', 'a marker of a vertex on the far side has another class');
+      await page.mouse.move(box.x, box.y);
+      await page.waitForSelector('.tip:not([hidden])');
+      const tip = await page.$eval('.tip', ({ textContent }) => textContent);
+      assert.match(tip, /primitive 0/, `angle ${angle}`);
+      assert.equal(tip.split(' · ')[0], shown, `angle ${angle}`);
+      await page.mouse.move(0, 0);
+    }
+    assert.deepEqual(pages.faults, []);
+  });
+
   test('tables, labels and menus fit at usual widths', async () => {
     const { page } = pages, { width, height } = page.viewport();
     await writeBump(path('bump.glb'), 1, 'animation KeyAction');

@@ -11,6 +11,8 @@ const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 const MARGIN = 8; // pixels between a label and the edges of its side (style.css)
 const LEAST_LABEL = 90; // pixels: a narrower side has no label
 const FLIGHT = 600; // milliseconds that the camera takes to fly to a place
+const FRONT = new Vector3(0.32, 0.16, 1); // the direction from the mesh to the camera of the first picture
+const LEAST_COSINE = 0.3; // of the angle between a normal and the direction to a camera that shows a vertex well
 const ease = (x) => x * x * (3 - 2 * x);
 const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
@@ -207,21 +209,43 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** Moves the camera so that the whole mesh is seen, from slightly beside the front. */
-  view.frame = (atOnce) => {
+  /** Moves the camera so that the whole mesh is seen, by default from slightly beside the front. */
+  view.frame = (atOnce, direction = FRONT) => {
     const { centre, size } = bounds();
     radius = size;
     camera.near = size / 200;
     camera.far = size * 60;
     controls.minDistance = size / 40;
     controls.maxDistance = size * 20;
-    const position = new Vector3(0.32, 0.16, 1).setLength(distanceOf(size)).add(centre);
+    const position = direction.clone().setLength(distanceOf(size)).add(centre);
     if (!atOnce) return fly(position, centre);
     ++flight;
     camera.position.copy(position);
     controls.target.copy(centre);
     controls.update();
     request();
+  };
+
+  // Returns true if a camera that shows the whole mesh from a direction also shows a vertex: nothing is in the way, and
+  // the true normal points to the camera.
+  function shows(vertex, direction) {
+    const { centre, size } = bounds(), target = new Vector3().fromArray(surface.positions, 3 * vertex);
+    const normal = new Vector3().fromArray(surface.right, 3 * vertex);
+    const way = direction.clone().setLength(distanceOf(size)).add(centre).sub(target).normalize();
+    if (!(normal.dot(way) > LEAST_COSINE)) return false;
+    const from = target.addScaledVector(way, 1e-3 * size);
+    return meet(surface.positions, part.triangles, from.toArray(), way.toArray()).distance === Infinity;
+  }
+
+  /** Moves the camera at once so that it shows the whole mesh and marks a vertex in it. The camera is slightly beside the
+   * front or, if `turns` is true, in the direction of the vertex's true normal. Returns false, and leaves the camera as
+   * it is, if the vertex is invisible from there. */
+  view.frameWith = (vertex, turns) => {
+    const direction = turns ? new Vector3().fromArray(surface.right, 3 * vertex) : FRONT;
+    if (!shows(vertex, direction)) return false;
+    view.frame(true, direction);
+    view.mark(vertex);
+    return true;
   };
 
   /** Looks at a point from a direction. `shares` are the coordinates of the point as fractions of the box of the mesh.

@@ -13,6 +13,9 @@ const KEYS = [
   ['W', 'show two pictures side by side, or as a wipe'], ['N P', 'go to the next or previous of the worst places'], ['F', 'show the whole mesh'], ['D', 'change between dark and light'], ['?', 'show these keys'],
 ];
 
+// A report opens at one of its first MOST_TRIED places whose error is at least LEAST_SHARE of the worst error.
+const MOST_TRIED = 12, LEAST_SHARE = 0.5;
+
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 
 /** Returns a label for a vertex, with the numbers of its mesh, its primitive and the vertex in the file. */
@@ -156,6 +159,23 @@ export function makeViewer(root, report, compute) {
     view.visit(vertex);
   }
 
+  // Opens the report at the worst place that is visible from slightly beside the front or, if there is no such place,
+  // at the worst place that is visible along its true normal. The worst place of all can be invisible, for example
+  // where a target pushes a face into the mesh, and the reader would see nothing wrong. If none of the first places is
+  // visible, opens the report at the worst place.
+  function open() {
+    const [first] = report.worst;
+    if (!first) {
+      player.choosePart(0);
+      return view.frame(true);
+    }
+    const tried = shownPlaces(report).filter(({ degrees }) => degrees >= LEAST_SHARE * first.degrees).slice(0, MOST_TRIED);
+    if ([false, true].some((turns) => tried.some((place) => view.frameWith(player.visit(place), turns)))) return;
+    const vertex = player.visit(first);
+    view.frame(true);
+    view.mark(vertex);
+  }
+
   slider.addEventListener('input', () => {
     player.pause();
     player.goTo(Number(slider.value));
@@ -181,12 +201,8 @@ export function makeViewer(root, report, compute) {
   setMode('lit');
   layouts.choose('side');
   if (report.parts.length > 0) {
-    const first = report.worst[0];
-    if (first) view.mark(player.visit(first));
-    else player.choosePart(0);
+    open();
     changed('viewer');
-    view.frame(true);
-    if (first) view.mark(first.vertex);
   }
   return {
     player, view, faces, visit, key, setMode, setLayout, close: () => (player.pause(), view.close()),
