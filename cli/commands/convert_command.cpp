@@ -1,5 +1,9 @@
 // Defines the command `convert`, which writes a motion in another format.
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,7 +15,9 @@
 #include "cli/terminal/print.h"
 #include "core/text.h"
 #include "io/bytes/expansion.h"
+#include "io/input/formats.h"
 #include "io/input/write_motion.h"
+#include "io/system/names.h"
 
 namespace chronormal::cli {
 namespace {
@@ -40,6 +46,63 @@ std::string convert_footer() {
          "\nExit codes: 0 done, 1 failed, 2 wrong usage, 3 invalid input";
 }
 
+// Returns a warning if files without times lose the times of a motion, or an empty text if they lose nothing: a reader
+// places the keyframes 1 s apart.
+std::string loss_of_times(const Motion& motion) {
+  const std::vector<Motion::Keyframe>& keys = motion.keyframes;
+  if (motion.kind == MotionKind::kTargets || keys.size() < 2) return "";
+  if (motion.segments.size() + 1 != keys.size())
+    return "these files hold no times, so that the motion glides where it should jump; write .npz to keep the jumps";
+  constexpr double kSameStep = 1e-3, kSameRate = 1e-6;
+  const double first = keys.front().time, step = (keys.back().time - first) / static_cast<double>(keys.size() - 1);
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (!(std::fabs(keys[k].time - first - static_cast<double>(k) * step) <= kSameStep * step))
+      return "these files hold no times, so that the keyframes are read 1 s apart; write .npz to keep their times";
+  if (std::fabs(step - 1) <= kSameRate) return "";
+  // A rate such as 24 per second is printed instead of 23.9999998, which comes from times in float32.
+  const double rounded = std::round(1000 / step) / 1000, rate = 1 / step;
+  return formatted("these files hold no times; read them with --fps {}, or write .npz to keep the times",
+                   std::fabs(rounded * step - 1) <= kSameRate ? rounded : rate);
+}
+
+// Returns true if the input stores velocities. The velocities of mesh files are not read for a format that cannot store
+// them, so the first mesh file is read once more.
+bool has_velocities(const InputOptions& input, const Motion& motion) {
+  if (motion.kind == MotionKind::kTargets || motion.keyframes.size() < 2 || input.is_curved()) return false;
+  const Motion::Keyframe& first = motion.keyframes.front();
+  if (!first.velocities.empty()) return true;
+  const std::vector<NamedFile> files = input_files(input);
+  const auto found = std::find_if(files.begin(), files.end(), [&](const NamedFile& file) {
+    const Format* const format = find_format(file.path);
+    return format != nullptr && format->read_moving_mesh != nullptr &&
+           file.path.substr(begin_of_name(file.path)) == first.name;
+  });
+  if (found == files.end()) return false;
+  InputOptions alone;
+  alone.files = {found->path};
+  alone.allow_mesh = alone.velocities = true;
+  Result<Input> mesh = chronormal::open_input(alone);
+  const Result<const Motion*> read = mesh ? mesh.value().motion() : mesh.error();
+  return read && !read.value()->keyframes.front().velocities.empty();
+}
+
+// Warns of everything that the input has and the format of the output cannot store.
+void warn_of_losses(const ConvertArguments& options, const Motion& motion) {
+  const std::string& output = options.common.output;
+  const auto warn = [](const std::string& message) { say("convert", message, Tone::kWarning); };
+  const bool is_float = output.ends_with(".pc2") || output.ends_with(".mdd");
+  if (is_float && motion.origin != std::array<double, 3>{})
+    warn(
+        "the mesh is far from the origin, so that positions lose digits in this format (float32); write .npz or .ply "
+        "to keep all digits");
+  const Format* const format = find_format(output);
+  if (format == nullptr || format->holds == Holds::kGltf) return;
+  if (format->write_mesh != nullptr)
+    if (const std::string loss = loss_of_times(motion); !loss.empty()) warn(loss);
+  if (format->name != "npz" && has_velocities(options.input, motion))
+    warn("this format holds no velocities, but the input has some; write .npz to keep them");
+}
+
 Result<int> run(const ConvertArguments& options) {
   Progress progress(options.common.quiet);
   InputOptions wanted = options.input;
@@ -57,12 +120,7 @@ Result<int> run(const ConvertArguments& options) {
     for (const std::string& name : names.value())
       if (name != output) outputs.push_back({"OUT", name});
   if (const Status distinct = check_distinct(outputs, input_files(options.input)); !distinct) return distinct.error();
-  const bool is_float = output.ends_with(".pc2") || output.ends_with(".mdd");
-  if (is_float && motion.value()->motion().origin != std::array<double, 3>{})
-    say("convert",
-        "the mesh is far from the origin, so that positions lose digits in this format (float32); write .npz or .ply "
-        "to keep all digits",
-        Tone::kWarning);
+  warn_of_losses(options, motion.value()->motion());
   const Status written = write_motion(*motion.value(), options.common.output, options.common.force,
                                       input.value().expansion(), !options.no_weld);
   if (!written) return written.error();

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "chronormal/io/output.h"
 #include "io/cache/npz.h"
 #include "tests/support/child_process.h"
 #include "tests/support/gltf_builder.h"
@@ -737,6 +740,59 @@ TEST_F(Cli, caches_and_arrays_are_motions_too) {
   expect_error(run("compare cloth.pc2"), 2, {"cloth.pc2", "mesh"});
   write_two_frames();
   expect_error(run("compare a.obj cloth.pc2"), 3, {"17,822", "3"});
+}
+
+TEST_F(Cli, convert_warns_of_times_and_velocities_that_the_format_cannot_store) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto warning_of = [&](const std::string& arguments) {
+    const ProcessResult result = run("convert --force " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << arguments << result.err;
+    return result.err.substr(0, result.err.find("-> "));
+  };
+  for (const char* const name : {"t_0.obj", "t_0.3.obj", "t_1.obj", "e_0.obj", "e_0.25.obj", "e_0.5.obj"})
+    write(name, mesh);
+  const std::string uneven = warning_of("t_0.obj t_0.3.obj t_1.obj -o out_%d.ply");
+  EXPECT_NE(uneven.find("these files hold no times"), std::string::npos) << uneven;
+  EXPECT_NE(uneven.find("write .npz to keep their times"), std::string::npos) << uneven;
+  EXPECT_EQ(warning_of("t_0.obj t_0.3.obj t_1.obj -o out.npz"), "");
+  EXPECT_EQ(warning_of("t_0.obj t_0.3.obj t_1.obj -o out.mdd"), "");
+  const std::string even = warning_of("e_0.obj e_0.25.obj e_0.5.obj -o out_%d.obj");
+  EXPECT_NE(even.find("read them with --fps 4, or write .npz"), std::string::npos) << even;
+  EXPECT_EQ(warning_of("'out_*.obj' -o again_%d.obj"), "") << "the keyframes are 1 s apart";
+  EXPECT_EQ(warning_of("--base t_0.obj t_1.obj -o targets_%d.obj"), "") << "targets have no times";
+
+  const int seed = 20261128;
+  std::cout << "seed " << seed << '\n';
+  std::mt19937 random(seed);
+  for (int i = 0; i < 10; ++i) {
+    const std::size_t rate = std::uniform_int_distribution<std::size_t>(2, 240)(random);
+    const std::string fps = "--fps " + std::to_string(rate);
+    const std::string warned = warning_of(fps + " 'out_*.obj' -o rate_%d.obj");
+    EXPECT_NE(warned.find("read them with " + fps + ","), std::string::npos) << warned;
+  }
+
+  Motion jumping;
+  jumping.topology = Topology::triangles(3, {0, 1, 2}).value();
+  for (const double time : {0.0, 0.0, 1.0}) jumping.keyframes.push_back({{0, 0, 0, 1, 0, 0, 0, 1, 0}, time, ""});
+  jumping.connect(MotionKind::kAnimation);
+  ASSERT_TRUE(write_motion(jumping, (folder_ / "jump.npz").string(), false));
+  const std::string jump = warning_of("jump.npz -o out_%d.obj");
+  EXPECT_NE(jump.find("write .npz to keep the jumps"), std::string::npos) << jump;
+  EXPECT_EQ(warning_of("jump.npz -o again.npz"), "");
+
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty float vx\nproperty float vy\nproperty float vz\nelement face 1\nproperty list "
+      "uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
+  fs::create_directory(folder_ / "moving");
+  for (const char* const name : {"moving/m_0.ply", "moving/m_1.ply"}) write(name, ply);
+  EXPECT_EQ(warning_of("moving -o moving.npz"), "");
+  for (const char* const input : {"moving", "moving.npz"}) {
+    for (const char* const output : {"out_%d.ply", "out.pc2", "out.mdd"}) {
+      const std::string lost = warning_of(std::string(input) + " -o " + output);
+      EXPECT_NE(lost.find("this format holds no velocities"), std::string::npos) << input << output << lost;
+    }
+  }
 }
 
 TEST_F(Cli, convert_takes_a_single_mesh) {
