@@ -459,8 +459,8 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   Opened input = open(source, KeepShading::kAll);
   const bool is_document = input.document() != nullptr;
   if (!is_document) {
-    require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
-            "the encoding of a sequence must be exact, endpoint or keys");
+    require(options.encoding != BakeEncoding::kSmallest, "encode",
+            "the encoding of a sequence must be harmless, exact, endpoint or keys");
     require(!smooth && !recompute_base, "smooth, recompute_base",
             "these options are only for glTF files, and the input is a sequence; leave them out");
   }

@@ -93,7 +93,8 @@ class ReadTest(unittest.TestCase):
                 (lambda: cn.audit(sample="twist", viewers="three"), ValueError, "glTF"),
                 (lambda: cn.compare(sample="twist", schemes=["none"]), ValueError, "none"),
                 (lambda: cn.compare(sample="twist", samples=1), ValueError, "at least 2"),
-                (lambda: cn.bake(sample="twist", encode="harmless"), ValueError, "encode: the encoding of a sequence"),
+                (lambda: cn.bake(sample="twist", encode="smallest"), ValueError,
+                 "encode: the encoding of a sequence must be harmless, exact, endpoint or keys"),
                 (lambda: cn.bake(sample="bumps"), ValueError, "targets"),
                 (lambda: cn.errors(sample="twist", elements="faces"), ValueError, "elements"),
                 (lambda: cn.errors(sample="twist", samples=100000), ValueError, "1 GiB")):
@@ -199,6 +200,14 @@ class ProgramTest(unittest.TestCase):
                 self.assert_errors(cn.errors(walk, weld=weld, **motion)[0], errors)
                 run("compare", *moving, *schemes, "--errors", errors, "--force")
                 self.assert_errors(cn.errors(walk, scheme="linear", weld=weld, **motion)[0], errors)
+
+    def test_a_sequence_takes_the_encodings_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for encode in ("harmless", "exact", "endpoint", "keys"):
+                with self.subTest(encode=encode):
+                    glb = Path(folder, encode + ".glb")
+                    run("bake", "--sample", "twist", "--encode", encode, "-o", glb)
+                    self.assertEqual(cn.bake(sample="twist", encode=encode)[0], glb.read_bytes())
 
     def test_options_of_a_gltf_file_reach_every_function(self):
         seed = 20261131
