@@ -4,6 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <functional>
+#include <set>
 #include <string>
 
 #include "chronormal/io/output.h"
@@ -69,6 +71,10 @@ void speak_as_rank(int rank) {
 bool speaks_as_rank() noexcept { return is_rank; }
 
 void say(std::string_view command, std::string_view message, Tone tone) {
+  // A fault in a glTF file may be a warning when the file is opened, and the error of the command afterwards.
+  static std::set<std::string, std::less<>> warnings;
+  if (tone == Tone::kError && warnings.contains(message)) return;
+  if (tone == Tone::kWarning) warnings.emplace(message);
   std::string who = "chronormal";
   if (!command.empty()) who.append(" ").append(command);
   who += ':';

@@ -38,8 +38,8 @@ void say_ending(std::string_view message) noexcept;
 void speak_as_rank(int rank);
 [[nodiscard]] bool speaks_as_rank() noexcept;
 
-/// Prints "chronormal COMMAND: message" on stderr, in one line; `command` may be empty. This function only prints; the
-/// caller reports an error by the exit code.
+/// Prints "chronormal COMMAND: message" on stderr, in one line; `command` may be empty. An error that repeats a warning
+/// of this process is not printed again. This function only prints; the caller reports an error by the exit code.
 enum class Tone { kWarning, kError };
 void say(std::string_view command, std::string_view message, Tone tone);
 

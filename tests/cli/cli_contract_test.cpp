@@ -795,6 +795,20 @@ TEST_F(Cli, convert_warns_of_times_and_velocities_that_the_format_cannot_store) 
   }
 }
 
+TEST_F(Cli, a_missing_buffer_is_reported_once) {
+  test::GltfBuilder face = test::quad_document();
+  face.add_track(face.add_animation("wave"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
+  Json document = Json::parse(face.gltf());
+  document["buffers"][0]["uri"] = "none.bin";
+  write("face.gltf", document.dump());
+  for (const char* const command : {"audit", "inspect", "compare", "bake -o o.glb", "query collapse"}) {
+    const ProcessResult result = run(std::string(command) + " face.gltf");
+    EXPECT_EQ(result.exit_code, 3) << command;
+    EXPECT_EQ(lines_of(result.err).size(), 1U) << result.err;
+    EXPECT_NE(result.err.find("this file is missing"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Cli, convert_takes_a_single_mesh) {
   write_two_frames();
   ASSERT_EQ(run("convert a.obj -o a.ply").exit_code, 0);
