@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -161,10 +162,20 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// Finds the first unknown option. (The parser would first report a required option that is missing.) If an option takes
-// a value, the next word is its value, whatever the word looks like.
-std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
+// Returns the option of a command that has the name, or nullptr.
+const Option* find_option(const Command& command, std::string_view name) {
+  for (const std::vector<Option>& table : command.tables)
+    for (const Option& option : table)
+      if (is_in(names_of(option), name)) return &option;
+  return nullptr;
+}
+
+// Finds the first option that is unknown, or that is given again although it takes only one value. (The parser would
+// first report a required option that is missing.) If an option takes a value, the next word is its value, whatever the
+// word looks like.
+std::optional<Error> find_misused_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
+  std::set<const Option*> given;
   std::vector<std::string> names = names_of_options(command);
   const std::vector<std::string> with_value = names_of_options(command, true);
   names.insert(names.end(), {"-h", "--help", "--help-all"});
@@ -177,6 +188,16 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
     if (!is_in(names, name))
       return Error{ErrorCode::kUsage, "",
                    formatted("there is no option '{}'{}", name, advice_on(name, command, commands))};
+    const Option* const option = find_option(command, name);
+    const bool takes_one = option != nullptr && is_in(with_value, name) &&
+                           !std::holds_alternative<std::vector<std::string>*>(option->target);
+    if (takes_one && !given.insert(option).second)
+      return Error{ErrorCode::kUsage, std::string(name),
+                   option->spelling.ends_with(",...")
+                       ? formatted("this option is given twice; give it once, with a comma between the values, as in "
+                                   "{} A,B",
+                                   name)
+                       : "this option is given twice; give it once"};
     if (name == word && is_in(with_value, name)) ++i;
   }
   return std::nullopt;
@@ -207,8 +228,8 @@ Result<int> understand_and_run(const std::vector<Command>& commands, std::span<c
   };
   if (first == "help") return print_or_report(help_of_command(*command_of(asked), false, columns_of_output()));
   if (const auto named = command_of(first); named != commands.end()) {
-    if (const auto unknown = find_unknown_option(*named, commands, arguments.subspan(2)))
-      return report(named->name, *unknown);
+    if (const auto misused = find_misused_option(*named, commands, arguments.subspan(2)))
+      return report(named->name, *misused);
   }
   const auto print_help = [&](bool all) {
     const auto parsed = program.get_subcommands();

@@ -174,6 +174,14 @@ TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("compare a.obj b.obj --samples --sample"), 2, {"--samples"});
 }
 
+TEST_F(Cli, an_option_that_takes_one_value_is_given_once) {
+  for (const char* const twice : {"bake a.glb -o a -o b", "bake a.glb -o a --output=b", "bake a.glb --fps 2 --fps=3"})
+    expect_error(run(twice), 2, {": this option is given twice; give it once\n"});
+  for (const char* const twice : {"audit a.glb --for three --for godot", "bake a.glb -o b --for three --for=godot"})
+    expect_error(run(twice), 2, {"--for: this option is given twice; give it once, with a comma", "as in --for A,B\n"});
+  expect_error(run("compare --sample twist --sample bend"), 2, {"--each"});  // a list takes a value each time
+}
+
 TEST_F(Cli, completions_and_the_manual_page_name_every_option) {
   const std::string manual = run("--manual-page").out, zsh = run("--completions zsh").out,
                     fish = run("--completions fish").out;
