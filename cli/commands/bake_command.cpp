@@ -289,7 +289,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                   "this option is not for sequences, whose animation drives all targets; leave --drivers out");
   const bool adds_up = std::all_of(how.viewers.begin(), how.viewers.end(),
                                    [](const Viewer& viewer) { return viewer.normals == NormalRule::kSum; });
-  if (!how.encoding && !options.viewers.empty() && options.viewers != "all" && !adds_up)
+  if (!how.encoding && !options.viewers.empty() && how.viewers != find_viewers("all").value() && !adds_up)
     how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
     return misuse(
@@ -455,10 +455,12 @@ Command bake_command() {
       "bake",
       "Correct the normals of a glTF file, or make a glTF file from a sequence",
       {input_table(options->input, refused),
-       {{"--for VIEWER,...", &options->viewers,
+       {{"--for VIEWER,...",
+         &options->viewers,
          "make the result for these viewers, such as three,godot\nViewers and compressors are " + viewer_names() +
              "; the word all stands for every viewer. The default is three, babylon, playcanvas and bevy. Where "
-             "possible, the result is no worse in the other viewers"},
+             "possible, the result is no worse in the other viewers",
+         {.check = check_viewers_given()}},
         {"--encode HOW", &options->encode,
          "choose how the new normals are stored (default for glTF: smallest)\nFor a sequence, the default is exact, or "
          "harmless if a viewer that --for names does not add up targets. smallest: the smallest errors in a file of at "

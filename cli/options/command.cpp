@@ -67,6 +67,8 @@ std::string morph_names() {
 
 }  // namespace
 
+Check check_viewers_given() { return check_given("the list of viewers is empty; name a viewer such as three, or all"); }
+
 std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
   return {{"--weighting NAME",
            &weighting,
@@ -74,14 +76,16 @@ std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
            "inverse-edges or inverse-roots. The default is the weighting that the base normals of the file follow, or "
            "area if they follow none",
            {.rare = true}},
-          {"--for VIEWER,...", &viewers,
+          {"--for VIEWER,...",
+           &viewers,
            of_viewers + ", such as three,godot\nViewers are three, babylon, playcanvas, godot, filament and bevy. "
                         "Compressors, whose files a viewer then renders, are gltfpack, quantize and meshopt. The word "
-                        "all stands for all viewers and compressors. The default is none"},
+                        "all stands for all viewers and compressors. The default is none",
+           {.check = check_viewers_given()}},
           {"--host NAME,...",
            &viewers_by_old_name,
            "do the same as --for, whose old name this is\nUse --for, since the next version will not know --host",
-           {.rare = true}},
+           {.check = check_viewers_given(), .rare = true}},
           {"--samples N",
            &samples,
            "judge N moments of each segment\nBoth ends of the segment are included. The default is 21, and fewer in "

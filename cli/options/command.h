@@ -73,6 +73,9 @@ struct JudgeArguments {
                             std::vector<Viewer>& to_viewers) const;
 };
 
+/// Returns a check that refuses an empty list of viewers.
+[[nodiscard]] Check check_viewers_given();
+
 /// Checks that viewers are named only if the input is a glTF file. Errors: kUsage.
 [[nodiscard]] Status check_viewers(const std::vector<Viewer>& viewers, const Input& input);
 

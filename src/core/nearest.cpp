@@ -26,9 +26,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_name(std::string_view word, std::span<const std::string> names) {
-  constexpr std::size_t kMostLetters = 2, kLongest = 32;
+  constexpr std::size_t kShortest = 3, kLong = 5, kLongest = 32;
   if (word.size() > kLongest) return "";
-  std::size_t least = std::min(kMostLetters, word.size() / 3) + 1;
+  std::size_t least = word.size() < kShortest ? 1 : word.size() < kLong ? 2 : 3;  // a distance must be less than this
   std::string nearest;
   for (const std::string& name : names) {
     const std::size_t distance = edit_distance(word, name);

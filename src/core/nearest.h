@@ -15,7 +15,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// Returns the name with the smallest edit distance to a word, and the first of several such names. Returns "" if that
-/// distance is more than two or more than a third of the word's length, or if the word has more than 32 letters.
+/// distance is more than one for a word of 3 or 4 letters, or more than two for a longer word, or if the word has fewer
+/// than 3 letters or more than 32.
 [[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string> names);
 
 }  // namespace chronormal::inline internal

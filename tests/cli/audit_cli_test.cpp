@@ -166,6 +166,7 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
 
 TEST_F(AuditCli, viewers_that_there_are_none_of_are_a_misuse) {
   expect_error("hinge.glb --for gdot", 2, "did you mean godot?");
+  expect_error("hinge.glb --for ''", 2, "--for: the list of viewers is empty");
   expect_error("hinge.glb --for unreal", 2, "choose from three, babylon, ");
   expect_error("hinge.glb --for all --rule slerp", 2, "--for");
   expect_error("a.obj b.obj --for all", 2, "--for");

@@ -39,6 +39,7 @@ TEST(Nearest, only_what_is_near_is_suggested) {
   EXPECT_EQ(nearest_name("bka", names), "");
   EXPECT_EQ(nearest_name("bkae", names), "bake");
   EXPECT_EQ(nearest_name("--smaple", names), "--sample");
+  EXPECT_EQ(nearest_name("duait", names), "audit");  // two edits in a word of five letters
   EXPECT_EQ(nearest_name("compare", names), "");
   EXPECT_EQ(nearest_name(std::string(40, 'a'), std::vector<std::string>{std::string(40, 'a')}), "");
   EXPECT_EQ(nearest_name("", names), "");

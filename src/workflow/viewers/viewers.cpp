@@ -128,6 +128,19 @@ Vec3f kept_direction(const Viewer& viewer, const Vec3f& v) noexcept {
   return to_float(viewer.bits >= kAllBits ? unit(vector) : through_unsigned_octahedral(unit(vector), viewer.bits));
 }
 
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+// Returns a name in a list without the blanks around it.
+std::string_view trimmed(std::string_view name) {
+  const std::size_t first = std::min(name.find_first_not_of(' '), name.size());
+  return name.substr(first, name.find_last_not_of(' ') + 1 - first);
+}
+
 Error no_such_viewer(std::string_view name) {
   std::string list;
   std::vector<std::string> names;
@@ -136,7 +149,7 @@ Error no_such_viewer(std::string_view name) {
     names.emplace_back(viewer.name);
   }
   std::string message = std::string("there is no viewer '").append(name) + "'";
-  const std::string nearest = nearest_name(name, names);
+  const std::string nearest = nearest_name(lower_case(name), names);
   message.append(nearest.empty() ? "; choose from " : "; did you mean " + nearest + "? Choose from ");
   return Error{ErrorCode::kUsage, "", message.append(list).append("and all")};
 }
@@ -150,15 +163,17 @@ Result<std::vector<Viewer>> find_viewers(std::string_view names) {
   };
   for (std::size_t first = 0; first <= names.size();) {
     const std::size_t end = std::min(names.find(',', first), names.size());
-    const std::string_view name = names.substr(first, end - first);
+    const std::string_view name = trimmed(names.substr(first, end - first));
+    const std::string lower = lower_case(name);
     first = end + 1;
-    if (name == "all") {
+    if (lower == "all") {
       for (const Viewer& viewer : kViewers)
         if (viewer.normals != NormalRule::kClamped) add(viewer);
       continue;
     }
-    const auto* const found =
-        std::find_if(kViewers.begin(), kViewers.end(), [&](const Viewer& viewer) { return viewer.name == name; });
+    const auto* const found = std::find_if(kViewers.begin(), kViewers.end(), [&](const Viewer& viewer) {
+      return viewer.name == lower || lower_case(viewer.title) == lower;
+    });
     if (found == kViewers.end()) return no_such_viewer(name);
     add(*found);
   }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iostream>
 #include <random>
 #include <set>
 #include <string>
@@ -80,6 +82,25 @@ TEST(Viewers, lists_are_in_the_order_asked_for_each_viewer_once) {
   EXPECT_TRUE(std::equal(kViewers.begin(), kViewers.end(), and_others.value().begin(), and_others.value().end()));
 }
 
+TEST(Viewers, names_and_titles_may_have_upper_case_and_blanks_around_them) {
+  constexpr std::uint32_t kCaseSeed = 20261128;
+  std::cout << "seed " << kCaseSeed << '\n';
+  std::mt19937 random(kCaseSeed);
+  for (const Viewer& viewer : kViewers) {
+    for (int round = 0; round < 20; ++round) {
+      std::string name(random() % 2 == 0 ? viewer.name : viewer.title);
+      for (char& c : name)
+        if (random() % 2 == 0 && c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+      const std::string list = std::string(random() % 3, ' ') + name + std::string(random() % 3, ' ') + ", three";
+      const Result<std::vector<Viewer>> found = find_viewers(list);
+      ASSERT_TRUE(found) << list;
+      EXPECT_EQ(found.value()[0].name, viewer.name) << list;
+      EXPECT_EQ(found.value().size(), viewer.name == "three" ? 1U : 2U) << list;
+    }
+  }
+  EXPECT_EQ(find_viewers("ALL").value().size(), find_viewers("all").value().size());
+}
+
 TEST(Viewers, an_unknown_name_is_told_all_names_and_the_nearest) {
   for (const char* wrong : {"gdot", "three,gdot", "gdot,three"}) {
     const Result<std::vector<Viewer>> viewers = find_viewers(wrong);
@@ -89,7 +110,9 @@ TEST(Viewers, an_unknown_name_is_told_all_names_and_the_nearest) {
               "there is no viewer 'gdot'; did you mean godot? Choose from three, babylon, playcanvas, godot, filament, "
               "bevy, gltfpack, quantize, meshopt, and all");
   }
-  for (const char* wrong : {"", ",", "three,", "Three.js 187", "unreal"}) {
+  EXPECT_NE(find_viewers("gotod").error().message.find("did you mean godot?"), std::string::npos);
+  EXPECT_NE(find_viewers("GDOT").error().message.find("'GDOT'; did you mean godot?"), std::string::npos);
+  for (const char* wrong : {"", " ", ",", "three,", "Three.js 187", "unreal"}) {
     const Result<std::vector<Viewer>> viewers = find_viewers(wrong);
     ASSERT_FALSE(viewers) << wrong;
     EXPECT_EQ(viewers.error().message.find("did you mean"), std::string::npos) << wrong;
