@@ -823,6 +823,8 @@ TEST_F(Cli, convert_takes_a_single_mesh) {
   ASSERT_EQ(run("convert a.ply -o again.obj").exit_code, 0);
   EXPECT_EQ(read("again.obj"), read("a.obj"));
   expect_error(run("convert missing.obj -o x.ply"), 1, {"missing.obj"});
+  for (const char* const format : {".npz", ".pc2", ".mdd"})
+    expect_error(run(std::string("convert a.obj -o x") + format), 2, {format, "; write .obj or .ply instead\n"});
 }
 
 TEST_F(Cli, a_face_that_shrinks_is_right_in_sequence_too) {

@@ -48,8 +48,7 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
 Status check_keyframes(const Motion& motion) {
   const auto misuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
   if (motion.keyframes.size() < 2 || motion.segments.empty())
-    return misuse(
-        "the mesh does not move, but this format needs at least two keyframes; write .obj, .ply or .npz instead");
+    return misuse("the mesh does not move, but this format needs at least two keyframes; write .obj or .ply instead");
   return Success{};
 }
 
