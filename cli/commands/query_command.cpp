@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/output.h"
@@ -17,6 +19,7 @@
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
+#include "core/nearest.h"
 #include "io/bytes/expansion.h"
 #include "workflow/json/json.h"
 
@@ -54,13 +57,21 @@ bool was_given(const Option& option) {
 Result<Question> find_question(const QueryArguments& options) {
   const auto& questions = options.questions;
   std::string names;
-  for (const Question& question : questions) names += (names.empty() ? "" : ", ") + question.name;
+  std::vector<std::string> list;
+  for (const Question& question : questions) {
+    names += (names.empty() ? "" : ", ") + question.name;
+    list.push_back(question.name);
+  }
   if (options.question.empty()) return misuse("QUESTION", "the question is missing; choose one of " + names);
   const auto found = std::find_if(questions.begin(), questions.end(),
                                   [&](const Question& question) { return question.name == options.question; });
-  if (found == questions.end())
-    return misuse("QUESTION",
-                  formatted("there is no question '{}'; choose one of {}", printable(options.question), names));
+  if (found == questions.end()) {
+    const std::string nearest = nearest_name(options.question, list);
+    return misuse(
+        "QUESTION",
+        formatted("there is no question '{}'{} {}", printable(options.question),
+                  nearest.empty() ? "; choose one of" : formatted("; did you mean {}? Choose one of", nearest), names));
+  }
   for (const Question& other : questions) {
     for (const Option& option : other.options)
       if (other.name != found->name && was_given(option))

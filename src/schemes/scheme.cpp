@@ -3,8 +3,11 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/charconv.h"
+#include "core/nearest.h"
 #include "schemes/kernels/curve_kernels.h"
 #include "schemes/makers.h"
 
@@ -61,13 +64,16 @@ std::optional<std::uint64_t> number_in(std::string_view text, std::uint64_t smal
 }
 
 Error unknown_scheme(std::string_view name) {
-  std::string message = "there is no scheme '" + std::string(name) + "'; choose one of";
-  const char* separator = " ";
+  std::string list;
+  std::vector<std::string> names;
   for (const SchemeDescription& description : kDescriptions) {
-    message += separator + std::string(description.name);
-    separator = ", ";
+    list.append(list.empty() ? "" : ", ").append(description.name);
+    names.emplace_back(description.name);
   }
-  return {ErrorCode::kUsage, "", std::move(message)};
+  const std::string nearest = nearest_name(name, names);
+  return {ErrorCode::kUsage, "",
+          "there is no scheme '" + std::string(name) +
+              (nearest.empty() ? "'; choose one of " : "'; did you mean " + nearest + "? Choose one of ") + list};
 }
 
 Error wrong_parameter(std::string_view name, std::string_view what, std::uint64_t smallest, std::uint64_t largest) {

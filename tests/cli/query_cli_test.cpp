@@ -186,6 +186,7 @@ TEST_F(QueryCli, people_get_a_table) {
 TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("", "QUESTION: the question is missing; choose one of ");
   expect_misuse("why a.obj b.obj", "there is no question 'why'; choose one of ");
+  expect_misuse("colapse a.obj b.obj", "there is no question 'colapse'; did you mean collapse? Choose one of cones, ");
   expect_misuse("collapse a.obj b.obj -o table.txt", "must end in .npz");
   expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: this option is only for query facing");
   expect_misuse("facing a.obj b.obj", "--direction: the camera is missing");

@@ -207,6 +207,8 @@ TEST(SchemeNormals, what_has_no_meaning_is_refused) {
     return made ? std::string("it is taken") : made.error().text();
   };
   EXPECT_NE(message(by_scheme("bicubic", ElementKind::kFaces)).find("there is no scheme 'bicubic'"), std::string::npos);
+  const std::string mistyped = message(by_scheme("slrp", ElementKind::kFaces));
+  EXPECT_NE(mistyped.find("'slrp'; did you mean slerp? Choose one of recompute, "), std::string::npos) << mistyped;
   EXPECT_NE(message(by_scheme("quaternion:polar", ElementKind::kVertices)).find("edges of faces"), std::string::npos);
   EXPECT_NE(message(by_scheme("rational", ElementKind::kFaces, Stepping{8})).find("cannot go step by step"),
             std::string::npos);
