@@ -129,6 +129,7 @@ TEST_F(TargetsCli, convert_writes_the_base_and_the_targets_but_no_cache_of_them)
   expect_error("sample out.npz --times 0.5 -o n.npy", 2, {"--times", "blend shapes have no times", "--weights"});
   expect_error("bake out.npz -o out.glb", 3, {"out.npz", "targets"});
   expect_error("convert out.npz -o out.mdd", 2, {"out.mdd", "targets"});
+  expect_error("convert out.npz -o out.fbx", 2, {"must end in one of .obj, ", "or .glb (for targets over a base)\n"});
 }
 
 TEST_F(TargetsCli, targets_have_weights_and_sequences_have_times) {

@@ -139,9 +139,10 @@ Status internal::write_motion(MotionStream& stream, const std::string& path, boo
     std::string writable;
     for (const Format& each : formats())
       if (each.write_mesh != nullptr || each.write_motion != nullptr)
-        writable.append(writable.empty() ? "" : ", ").append(each.extensions.front());
+        writable.append(each.extensions.front()).append(", ");
     return Error{ErrorCode::kUsage, path,
-                 "the format of the output is unknown; its name must end in one of " + writable};
+                 "the format of the output is unknown; its name must end in one of " + writable +
+                     "or .glb (for targets over a base)"};
   }
   Result<OutputFile> file = OutputFile::create(path, force);
   if (!file) return file.error();
