@@ -5,8 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -21,6 +24,8 @@
 #include "cli/terminal/version.h"
 #include "core/charconv.h"
 #include "core/nearest.h"
+#include "io/input/formats.h"
+#include "io/system/names.h"
 
 namespace chronormal::cli {
 namespace {
@@ -122,10 +127,19 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
     names.push_back(command.name);
     list += (list.empty() ? "" : ", ") + command.name;
   }
+  const auto is_file = [first] {
+    std::error_code error;
+    return find_format(first) != nullptr || std::filesystem::exists(path_of(std::string(first)), error);
+  };
   if (first.empty())
     say("", "the command is missing; choose one of " + list, Tone::kError);
   else if (const std::string nearest = suggestion(first, names); !nearest.empty())
     say("", formatted("there is no command '{}'{} Choose one of {}", first, nearest, list), Tone::kError);
+  else if (is_file())
+    say("",
+        formatted("the command is missing before '{0}'; write 'chronormal audit {0}', or choose another of {1}", first,
+                  list),
+        Tone::kError);
   else
     say("", formatted("there is no command '{}'; choose one of {}", first, list), Tone::kError);
   say_where_help_is("");
@@ -146,6 +160,27 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
     }
   }
   return names;
+}
+
+// Returns the error for an option in the place of the command.
+Error misplaced_option(std::string_view option, const std::vector<Command>& commands,
+                       std::span<char* const> arguments) {
+  const auto names_one = [&](std::string_view word) {
+    return std::any_of(commands.begin(), commands.end(), [&](const Command& command) { return command.name == word; });
+  };
+  if (std::any_of(arguments.begin(), arguments.end(), names_one))
+    return Error{ErrorCode::kUsage, "",
+                 formatted("option '{}' stands before the command; put the option after the command", option)};
+  const bool belongs_to_one = std::any_of(commands.begin(), commands.end(), [&](const Command& command) {
+    return is_in(names_of_options(command), option.substr(0, option.find('=')));
+  });
+  if (belongs_to_one)
+    return Error{ErrorCode::kUsage, "",
+                 formatted("the command is missing before option '{0}'; write chronormal COMMAND {0}", option)};
+  const std::vector<std::string> own = {"--help", "--help-all", "--version", "--manual-page", "--completions"};
+  return Error{
+      ErrorCode::kUsage, "",
+      formatted("there is no option '{}'{}", option, option == "-v" ? "; did you mean -V?" : suggestion(option, own))};
 }
 
 // Returns advice on an unknown option. The advice is the reason that the command gives for refusing the option, or else
@@ -221,8 +256,12 @@ Result<int> understand_and_run(const std::vector<Command>& commands, std::span<c
     return text ? print_or_report(text.value()) : report("", text.error());
   }
   const std::string_view asked = first == "help" && !second.empty() ? second : first;
-  if (asked == "help") return print_or_report(help_of_program(commands, columns_of_output()));
+  if (asked == "help" || (first == "help" && second.starts_with('-')))
+    return print_or_report(help_of_program(commands, columns_of_output()));
   if (!is_known(commands, asked)) return kExitUsage;
+  constexpr std::string_view kOwn[] = {"-h", "--help", "--help-all", "-V", "--version"};
+  if (first.starts_with('-') && std::find(std::begin(kOwn), std::end(kOwn), first) == std::end(kOwn))
+    return report("", misplaced_option(first, commands, arguments.subspan(2)));
   const auto command_of = [&](std::string_view name) {
     return std::find_if(commands.begin(), commands.end(), [&](const Command& command) { return command.name == name; });
   };
@@ -245,13 +284,14 @@ Result<int> understand_and_run(const std::vector<Command>& commands, std::span<c
     return print_help(true);
   } catch (const CLI::Success&) {  // thrown for --help
     return print_help(false);
+  } catch (const CLI::RequiredError&) {  // only an output is ever required, because is_known() has found the command
+    const auto parsed = program.get_subcommands();
+    return report(parsed.empty() ? "" : parsed.front()->get_name(),
+                  Error{ErrorCode::kUsage, "", "the output is missing; name it with -o OUT"});
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
-    say(name,
-        parsed.empty() ? formatted("option '{}' stands before the command; put the option after the command", first)
-                       : error.what(),
-        Tone::kError);
+    say(name, error.what(), Tone::kError);
     say_where_help_is(name);
     return kExitUsage;
   }

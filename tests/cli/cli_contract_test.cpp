@@ -160,6 +160,8 @@ TEST_F(Cli, help_and_version_have_short_ways) {
   EXPECT_EQ(run("-V").out, run("--version").out);
   EXPECT_EQ(run("help").out, run("--help").out);
   EXPECT_EQ(run("help bake").out, run("bake -h").out);
+  for (const char* const option : {"--json", "-h", "--bogus"})
+    EXPECT_EQ(run(std::string("help ") + option).out, run("--help").out) << option;
   expect_error(run("help bkae"), 2, {"did you mean bake?"});
 }
 
@@ -503,14 +505,23 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   }
   expect_error(run("compare a.obj b.obj -o ''"), 2, {"name of the output"});
   expect_error(run("compare --bogus"), 2, {"--bogus", "compare --help"});
-  expect_error(run("--bogus"), 2, {"option '--bogus' stands before the command"});
+  expect_error(run("--bogus"), 2, {"there is no option '--bogus'\n"});
+  expect_error(run("-v"), 2, {"there is no option '-v'; did you mean -V?\n"});
+  expect_error(run("--versoin"), 2, {"did you mean --version?\n"});
+  expect_error(run("--json a.obj"), 2,
+               {"the command is missing before option '--json'; write chronormal COMMAND --js"});
+  for (const char* const option : {"-q", "--bogus"})
+    expect_error(run(std::string(option) + " compare a.obj"), 2, {"' stands before the command; put the option after"});
+  expect_error(run("face.glb"), 2, {"missing before 'face.glb'; write 'chronormal audit face.glb', or choose "});
+  expect_error(run("."), 2, {"write 'chronormal audit .', or choose another of audit, bake, "});
   expect_error(run("compare a.obj b.obj --schemes lagrange:0"), 2, {"1 to 64"});
   expect_error(run("compare a.obj b.obj --elements edges"), 2, {"--elements"});
   expect_error(run("compare a.obj b.obj --json --csv"), 2, {"--csv"});
   expect_error(run("compare a.obj b.obj --fps 0"), 2, {"frame"});
   expect_error(run("compare --sample teapot"), 2, {"teapot", "twist"});
   expect_error(run("compare --sample twist --sample bend"), 2, {"--each"});
-  expect_error(run("convert --sample twist"), 2, {"--output"});
+  for (const char* const command : {"convert", "report", "sample --times 0"})
+    expect_error(run(std::string(command) + " --sample twist"), 2, {": the output is missing; name it with -o OUT\n"});
   expect_error(run("convert --sample twist -o twist_%d.stl"), 2, {".obj", ".ply"});
 }
 
