@@ -175,7 +175,8 @@ CHRONORMAL_API void chronormal_blend_destroy(chronormal_blend* blend);
 /* A motion from files, in every format that the program reads. */
 typedef struct chronormal_motion chronormal_motion;
 
-/* Reads files as the command line of `chronormal sample` does; the tolerance of the options is not used. */
+/* Reads files as the command line of `chronormal sample` does, but needs at least two keyframes, or a file with a
+ * motion. The tolerance of the options is not used. */
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
 /* Sets the path of the vertices of a sequence, like `chronormal sample --path`: "linear" (at first), "catmull-rom", on
