@@ -391,6 +391,7 @@ chronormal_status chronormal_motion_read(const char* const* files, size_t file_c
   if (result == nullptr) return misuse("result", "the pointer is NULL; pass a valid pointer");
   if (files == nullptr || std::find(files, files + file_count, nullptr) != files + file_count)
     return misuse("files", "the pointer is NULL; pass a valid pointer");
+  if (file_count == 0) return misuse("file_count", "there are no files; pass at least one name");
   return guarded([&] {
     const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());

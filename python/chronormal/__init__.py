@@ -173,6 +173,8 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
             files = list(source)
         except TypeError:
             raise TypeError(f"source: the value must be files, bytes or a Motion, not {type(source).__name__}") from None
+        if not files:
+            raise ValueError("source: the list has no files; give at least one file")
         files = [_file(file, f"source[{i}]") for i, file in enumerate(files)]
     return {"files": files, "bytes": data, "motion": motion,
             "samples": [_text(sample, "sample")] if sample is not None else [],
@@ -345,7 +347,7 @@ def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weight
     return _json.loads(text)
 
 
-def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int = 21,
+def compare(source: _Source = None, *, schemes: str | Iterable[str] = (), samples: int = 21,
             access: Literal["random", "sequential"] = "random", elements: _Elements = "faces", crease: float = 180.0,
             weld: bool = True, times: bool = False, certify: bool = False, tolerance: float | None = None,
             face: int | tuple[int, int] | None = None, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
@@ -370,6 +372,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
     if access not in ("random", "sequential"):
         raise ValueError("access: the value must be random or sequential")
     opened = _source(source, sample, base, fps, animation, world, path, loop=loop, strict=strict)
+    schemes = schemes.split(",") if isinstance(schemes, str) and schemes else list(schemes)
     if face is not None:
         for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
                             "times": times, "certify": certify, "tolerance": tolerance is not None}.items():
@@ -377,8 +380,8 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
                 raise ValueError(f"{name}: this option cannot be used with face, which examines a single face; leave this option "
                                  "or face out")
         number, segment = face if isinstance(face, tuple) else (face, 0)
-        return _json.loads(_chronormal.figure_of_face(opened, list(schemes), samples, number, segment))
-    text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
+        return _json.loads(_chronormal.figure_of_face(opened, schemes, samples, number, segment))
+    text, _ = _chronormal.compare(opened, schemes, samples, access == "sequential", elements, crease, weld, times,
                                   False, certify, tolerance)
     return _json.loads(text)
 

@@ -97,6 +97,8 @@ class Curves : public ZeroedObject {
   // normal before scaling to length 1.
   [[nodiscard]] py::array control_normals() const {
     const std::size_t count = size();
+    require(curves().options().tolerance <= 1e-6, "control_normals",
+            "compact curves keep no control normals; make the curves with tolerance=1e-6");
     std::vector<float> values(9 * count);
     value_or_raise(curves().fill_vertex_buffer(ControlFormat::kFloat32, std::as_writable_bytes(std::span(values))));
     return array_of(std::move(values), {static_cast<py::ssize_t>(count), 3, 3});

@@ -27,10 +27,14 @@ py::array array_of_column(QueryColumn column) {
 }
 
 // Returns a dict of the arrays of an answer. The keys are the names that the program uses in files. Calls `ask` without
-// the GIL.
+// the GIL. Errors name the arguments `start` and `end` instead of the options --from and --to.
 template <class Ask>
 py::dict answer_of(const Ask& ask) {
-  QueryAnswer found = without_gil(ask);
+  QueryAnswer found = without_gil([&]() -> Result<QueryAnswer> {
+    Result<QueryAnswer> answer = ask();
+    if (answer || (answer.error().place != "--from" && answer.error().place != "--to")) return answer;
+    return Error{answer.error().code, answer.error().place == "--from" ? "start" : "end", answer.error().message};
+  });
   py::dict arrays;
   for (QueryTable& table : found.tables) {
     const std::string prefix = table.name.empty() ? "" : table.name + '_';

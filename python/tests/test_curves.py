@@ -225,6 +225,8 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: cn.curves(p0, p1, faces, crease=30), "crease: only corners can have hard edges"),
                 (lambda: cn.curves(p0, p1, faces, elements="corners", crease=200), "crease"),
                 (lambda: cn.curves(p0, p1, faces, tolerance=0), "tolerance"),
+                (lambda: cn.curves(p0, p1, faces, tolerance=1e-3).control_normals,
+                 "^control_normals: compact curves keep no control normals; make the curves with tolerance=1e-6$"),
                 (lambda: cn.curves(p0, p1, faces, threads=-1), "threads"),
                 (lambda: curves.unit_normals("now"), "t: the value must be a number"),
                 (lambda: curves.unit_normals([[0.5]]), r"t: the shape must be .*but is \(1, 1\)"),

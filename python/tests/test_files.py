@@ -82,7 +82,8 @@ class ReadTest(unittest.TestCase):
                 (lambda: cn.read(), ValueError, "source: give either files, bytes or a Motion"),
                 (lambda: cn.read("a", sample="twist"), ValueError, "source"),
                 (lambda: cn.read(sample="none"), ValueError, "none"),
-                (lambda: cn.read([]), ValueError, ""),
+                (lambda: cn.read([]), ValueError, "^source: the list has no files; give at least one file$"),
+                (lambda: cn.compare(sample="twist", schemes="slrp"), ValueError, "there is no scheme 'slrp'"),
                 (lambda: cn.read(sample="twist", fps=0), ValueError, "fps"),
                 (lambda: cn.read(sample="twist").unit_normals([2]), ValueError, "0 to 1"),
                 (lambda: cn.read(sample="twist").unit_normals(), ValueError, "times: the times are missing"),
@@ -152,7 +153,7 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(cn.inspect(sample="twist"), json.loads(run("inspect", *sample)))
         self.assertEqual(cn.compare(sample="twist", schemes=["linear", "circle"], tolerance=15),
                          json.loads(run("compare", *sample, "--no-times", "--schemes", "linear,circle", "--tolerance", 15)))
-        self.assertEqual(cn.compare(sample="twist", schemes=["linear", "slerp"], elements="vertices"),
+        self.assertEqual(cn.compare(sample="twist", schemes="linear,slerp", elements="vertices"),
                          json.loads(run("compare", *sample, "--no-times", "--schemes", "linear,slerp", "--elements", "vertices")))
 
     def test_normals_have_the_bits_of_the_program(self):

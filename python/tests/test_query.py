@@ -27,8 +27,12 @@ class QueryTest(unittest.TestCase):
 
     def test_a_span_is_in_the_times_of_the_keyframes(self):
         self.assertEqual(cn.collapse(KEYFRAMES, FACES, times=[0, 2, 3], start=2)["segment"].tolist(), [1])
-        with self.assertRaisesRegex(ValueError, "--to: the time must be later than that of --from"):
-            cn.collapse(KEYFRAMES, FACES, start=1, end=1)
+        for span, words in (({"start": 1, "end": 1}, "^end: the last time must be later than the first"),
+                            ({"start": 9}, "^start: the motion has nothing after 9"),
+                            ({"end": -1}, "^end: the motion has nothing before -1")):
+            for ask in (cn.collapse, cn.shutter):
+                with self.subTest(span=span), self.assertRaisesRegex(ValueError, words):
+                    ask(KEYFRAMES, FACES, **span)
 
     def test_fronts_are_intervals(self):
         found = cn.facing(KEYFRAMES, FACES, direction=[0, 0, 1], silhouettes=True)

@@ -282,6 +282,8 @@ static int check_motion(const char* folder) {
   files[1] = "nothing.obj";
   EXPECT(chronormal_motion_read(files, 2, NULL, &motion) == CHRONORMAL_FAILED);
   EXPECT(strstr(chronormal_last_message(), "nothing.obj") != NULL);
+  EXPECT(chronormal_motion_read(files, 0, NULL, &motion) == CHRONORMAL_USAGE);
+  EXPECT(strcmp(chronormal_last_message(), "file_count: there are no files; pass at least one name") == 0);
   return 0;
 }
 

@@ -197,7 +197,7 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("collapse a.obj b.obj --from 1",
                 "--from: the motion has nothing after 1; the motion goes from 0 to 1; choose a time in between");
   expect_misuse("collapse a.obj b.obj --to 0", "--to: the motion has nothing before 0");
-  expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: the time must be later than that of --from");
+  expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: the last time must be later than the first");
   EXPECT_EQ(run("collapse a.obj").exit_code, 3) << "a mesh that stands still is no motion";
 }
 

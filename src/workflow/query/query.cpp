@@ -55,7 +55,7 @@ Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const Query
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   const double from = span.from ? time_of_keyframe_at(motion, *span.from) : -kEndless,
                to = span.to ? time_of_keyframe_at(motion, *span.to) : kEndless;
-  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the time must be later than that of --from"};
+  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the last time must be later than the first"};
   std::vector<SegmentPart> parts;
   double first = kEndless, last = -kEndless;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
