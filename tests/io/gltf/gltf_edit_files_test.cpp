@@ -197,7 +197,11 @@ TEST(GltfEditFiles, images_beside_the_source_are_taken_along) {
   folder.write("c.webp", "no image");
   EXPECT_EQ(bytes_or_error(edit, folder / "out.glb"),
             "in.gltf, /images/2/uri: the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write a .gltf "
-            "file instead");
+            "file beside the input");
+  EXPECT_EQ(bytes_or_error(edit, elsewhere / "out.gltf"),
+            "in.gltf, /images/2/uri: the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write the "
+            "result beside the input");
+  EXPECT_TRUE(Json::parse(bytes_or_error(edit, folder / "out.gltf")).is_object()) << "beside the input it is not moved";
 }
 
 TEST(GltfEditFiles, an_image_that_a_change_took_away_is_not_taken_along) {

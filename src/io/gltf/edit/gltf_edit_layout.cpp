@@ -149,8 +149,9 @@ Status EditLayout::find_images() {
     const std::string_view bytes = files_.emplace_back(std::move(file).value()).bytes();
     const char* const media_type = media_type_of(bytes);
     if (media_type == nullptr)
-      return invalid_input(
-          place, "the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write a .gltf file instead");
+      return invalid_input(place,
+                           std::string("the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write ") +
+                               (target_.glb ? "a .gltf file" : "the result") + " beside the input");
     images_.push_back({i, media_type, bytes});
   }
   return Success{};
