@@ -133,8 +133,9 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
       const std::optional<std::string_view> type = header.string();
       if (!type) return error("the array has records instead of numbers; save it as float32, float64 or integers");
       if (!read_type(*type, allow_text, array))
-        return error("elements of the type " + scan::quoted(*type) +
-                     " cannot be read; save the array as float32, float64, or integers of up to 64 bits");
+        return error(
+            "elements of the type " + scan::quoted(*type) +
+            " cannot be read; save it as float32 or float64, or if it holds faces, as integers of up to 64 bits");
       has_type = true;
     } else if (*key == "fortran_order" && !has_order) {
       const std::optional<bool> is_fortran = header.boolean();

@@ -157,9 +157,11 @@ bool is_padded_list(const Array& array) {
 
 Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const std::string& place) {
   if (is_padded_list(array)) return invalid_input(place, kPadded);
-  if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3 || array.element_count() == 0)
-    return invalid_input(place,
-                         "faces must be an array of integers with the shape (faces, 3), but are " + array.text());
+  if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3)
+    return invalid_input(
+        place, "faces must be an array of integers with the shape (faces, 3), or (faces, 4) for quads, but are " +
+                   array.text());
+  if (array.shape[0] == 0) return invalid_input(place, "there are no faces; save at least one face");
   constexpr std::uint64_t kMostCorners = std::numeric_limits<std::uint32_t>::max();
   if (array.element_count() > kMostCorners)
     return invalid_input(place, "the mesh has more than 4,294,967,295 corners; split the mesh");

@@ -158,7 +158,11 @@ TEST(ReadNpz, errors_name_array_and_element) {
         error_of(archive(kPositions, npy(npy_header(type, "(1, 3)"), data))),
         "walk.npz, faces[0, 2]: the face refers to a vertex that does not exist; vertices are counted from 0 to 2");
   EXPECT_EQ(error_of(archive(kPositions, npy(npy_header("<f4", "(1, 3)"), std::string(12, '\0')))),
-            "walk.npz, faces: faces must be an array of integers with the shape (faces, 3), but are (1, 3) of '<f4'");
+            "walk.npz, faces: faces must be an array of integers with the shape (faces, 3), or (faces, 4) for quads, "
+            "but are (1, 3) of '<f4'");
+  for (const char* const shape : {"(0, 3)", "(0, 4)"})
+    EXPECT_EQ(error_of(archive(kPositions, npy(npy_header("<i4", shape), ""))),
+              "walk.npz, faces: there are no faces; save at least one face");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(3,)"), std::string(12, '\0')))),
             "walk.npz, times: times must be an array of 2 numbers, one for each keyframe, but are (3,) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(2,)"), std::string(8, '\0')))),
@@ -192,8 +196,11 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
               "walk.npz, positions: the array header is not as NumPy writes it; save the array with numpy.save or "
               "numpy.savez")
         << header;
-  EXPECT_NE(error_with(npy_header("<f2", "(2, 3, 3)")).find("elements of the type '<f2' cannot be read"),
-            std::string::npos);
+  EXPECT_NE(
+      error_with(npy_header("<f2", "(2, 3, 3)"))
+          .find(
+              "elements of the type '<f2' cannot be read; save it as float32 or float64, or if it holds faces, as int"),
+      std::string::npos);
   EXPECT_NE(error_with("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3, 3)}").find("has records"),
             std::string::npos);
   // The number of bytes of the large shapes overflows 64 bits. For the first shape, the result of the overflow is
