@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -162,6 +163,23 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
   EXPECT_EQ(json["viewers"][0]["passed"], false);
   EXPECT_EQ(json["viewers"][1]["passed"], true);
   EXPECT_EQ(Json::parse(run("long.glb --samples 3 --tolerance 20 --for godot --json").out)["passed"], true);
+}
+
+TEST_F(AuditCli, bars_of_the_histogram_fit_a_narrow_output) {
+  for (const std::size_t columns : {40U, 50U, 120U}) {
+    const ProcessResult result = run_shell(
+        "COLUMNS=" + std::to_string(columns) + ' ' + kProgram + " audit a.obj stale.obj --samples 5", folder_.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    std::istringstream lines(result.out);
+    std::size_t bars = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.ends_with('#')) continue;
+      ++bars;
+      EXPECT_LE(line.size(), columns) << line;
+      EXPECT_NE(line.find_first_of("0123456789"), std::string::npos) << "a bar is beside its numbers: " << line;
+    }
+    EXPECT_GT(bars, 0U) << result.out;
+  }
 }
 
 TEST_F(AuditCli, viewers_that_there_are_none_of_are_a_misuse) {

@@ -186,10 +186,19 @@ std::string histogram(const MotionError& error) {
   table.add_column("share", "%", Align::kRight);
   table.add_column("", "", Align::kLeft);
   const std::size_t most = *std::max_element(error.histogram.begin(), error.histogram.end());
+  // The bars get the columns that the other cells leave free.
+  constexpr std::size_t kShare = 5, kGaps = 6;
+  std::size_t words = 0;
+  for (std::size_t bin = 0; bin < kAuditBins; ++bin) words = std::max(words, bin_words(bin).size());
+  const std::size_t taken = words + std::max(grouped(most).size(), std::string_view("samples").size()) + kShare + kGaps,
+                    columns = columns_of_output();
+  const std::size_t longest = std::min(kLongestBar, columns > taken ? columns - taken : 1);
   for (std::size_t bin = 0; bin < kAuditBins; ++bin) {
     const double count = static_cast<double>(error.histogram[bin]);
     const auto bar =
-        most > 0 ? static_cast<std::size_t>(std::lround(kLongestBar * count / static_cast<double>(most))) : 0;
+        most > 0
+            ? static_cast<std::size_t>(std::lround(static_cast<double>(longest) * count / static_cast<double>(most)))
+            : 0;
     const double share = error.judged > 0 ? 100 * count / static_cast<double>(error.judged) : 0;
     table.add_row({bin_words(bin), grouped(error.histogram[bin]), formatted("{:.1f}", share),
                    std::string(error.histogram[bin] > 0 ? std::max<std::size_t>(bar, 1) : 0, '#')});
