@@ -161,9 +161,9 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 }};
 
 /// Finds the viewers in a list of names or titles with commas between them, in the order of the list and each once.
-/// Upper case and blanks around a name do not matter. "all" selects the viewers that show a file unchanged, which leaves
-/// out compressors. Errors: kUsage for an unknown name; the message has all names, and the most similar name if there is
-/// one.
+/// Upper case and blanks around a name do not matter. "all" selects the viewers that show a file unchanged, which
+/// leaves out compressors. Errors: kUsage for an unknown name; the message has all names, and the most similar name if
+/// there is one.
 [[nodiscard]] Result<std::vector<Viewer>> find_viewers(std::string_view names);
 
 /// Returns the value N' that a viewer stores for the base normal N; (0, 0, 0) if N is zero.
