@@ -181,8 +181,6 @@ Result<std::optional<Audited>> audit_input(const AuditArguments& options, const 
   }
   progress.clear();
   if (!found) return std::optional<Audited>();
-  if (document == nullptr)  // opening a document has printed its notes
-    for (const std::string& note : found->notes) say("audit", note, Tone::kWarning);
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return std::optional(
       Audited{std::move(input), std::move(*found), options.limits, can_be_baked ? words_of(options.input) : ""});

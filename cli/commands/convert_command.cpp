@@ -65,27 +65,6 @@ std::string loss_of_times(const Motion& motion) {
                    std::fabs(rounded * step - 1) <= kSameRate ? rounded : rate);
 }
 
-// Returns true if the input stores velocities. The velocities of mesh files are not read for a format that cannot store
-// them, so the first mesh file is read once more.
-bool has_velocities(const InputOptions& input, const Motion& motion) {
-  if (motion.kind == MotionKind::kTargets || motion.keyframes.size() < 2 || input.is_curved()) return false;
-  const Motion::Keyframe& first = motion.keyframes.front();
-  if (!first.velocities.empty()) return true;
-  const std::vector<NamedFile> files = input_files(input);
-  const auto found = std::find_if(files.begin(), files.end(), [&](const NamedFile& file) {
-    const Format* const format = find_format(file.path);
-    return format != nullptr && format->read_moving_mesh != nullptr &&
-           file.path.substr(begin_of_name(file.path)) == first.name;
-  });
-  if (found == files.end()) return false;
-  InputOptions alone;
-  alone.files = {found->path};
-  alone.allow_mesh = alone.velocities = true;
-  Result<Input> mesh = chronormal::open_input(alone);
-  const Result<const Motion*> read = mesh ? mesh.value().motion() : mesh.error();
-  return read && !read.value()->keyframes.front().velocities.empty();
-}
-
 // Warns of everything that the input has and the format of the output cannot store.
 void warn_of_losses(const ConvertArguments& options, const Motion& motion) {
   const std::string& output = options.common.output;
@@ -99,7 +78,7 @@ void warn_of_losses(const ConvertArguments& options, const Motion& motion) {
   if (format == nullptr || format->holds == Holds::kGltf) return;
   if (format->write_mesh != nullptr)
     if (const std::string loss = loss_of_times(motion); !loss.empty()) warn(loss);
-  if (format->name != "npz" && has_velocities(options.input, motion))
+  if (format->name != "npz" && !motion.keyframes.front().velocities.empty())
     warn("this format holds no velocities, but the input has some; write .npz to keep them");
 }
 

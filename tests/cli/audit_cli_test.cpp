@@ -489,7 +489,7 @@ TEST_F(AuditCli, advice_is_kept_by_the_command_that_it_names) {
   };
   EXPECT_LE(worst_after(""), 90.0);
   EXPECT_LE(worst_after("--encode exact"), 0.01);
-  EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
+  EXPECT_EQ(last_line(text_of("baked.glb")), "there is nothing to do, since no error is larger than 1 degree");
 }
 
 // A sheet in the plane z = 0 swings around the x axis. The normal is linear in the weight, so a single normal delta
@@ -517,7 +517,7 @@ TEST_F(AuditCli, advice_for_tangents_is_kept_by_the_command_that_it_names) {
             "chronormal bake swing.glb -o baked.glb computes new tangents; the normals are right");
   const ProcessResult baked = run_shell(std::string(kProgram) + " bake swing.glb -o baked.glb -q", folder_.path(), "");
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
+  EXPECT_EQ(last_line(text_of("baked.glb")), "there is nothing to do, since no error is larger than 1 degree");
   // A bake for a viewer that does not morph tangents leaves the tangents as they are, so the advice must not be a
   // second bake.
   target.normals.clear();

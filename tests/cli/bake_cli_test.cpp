@@ -458,7 +458,7 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   expect_error("moving.glb -o out.glb --drivers -", 2, "--drivers");
   expect_error("moving.glb -o out.glb --drivers out.glb", 2, "--drivers");
   expect_error("f_0.obj f_1.obj -o out.glb --drivers d.json", 2, "--drivers");
-  expect_error("moving.glb", 2, "--output");
+  expect_error("moving.glb", 2, "-o OUT");
   expect_error("moving.glb -o out.glb --encode harmless --max-bytes 100", 3, "allows only 100");
   expect_error("f_0.obj f_1.obj -o out.glb --max-bytes 100", 3, "more than 100 bytes");
   for (const std::string option : {"--max-targets 5", "--animations-only", "--plan", "--poses random"})
@@ -494,6 +494,33 @@ TEST_F(BakeCli, what_cannot_be_had_ends_in_exit_code_4_only_where_somebody_asked
   EXPECT_EQ(few.exit_code, 4);
   expect_words(few.err, {"allow more targets or bytes with --max-targets or --max-bytes"});
   EXPECT_EQ(bytes_of("few.glb"), bytes_of("moving.glb"));
+}
+
+TEST_F(BakeCli, a_plan_recommends_what_a_bake_writes) {
+  constexpr std::uint64_t kFirstSeed = 1134;
+  std::cout << "  from seed " << kFirstSeed << "\n";
+  std::size_t listed = 0;
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 8; ++seed) {
+    test::GltfBuilder sheet = test::random_sheet(seed, 5, 2 + seed % 2, 0).file();
+    const std::size_t targets = 2 + seed % 2;
+    std::vector<float> weights(4 * targets);
+    for (std::size_t n = 0; n < weights.size(); ++n) weights[n] = static_cast<float>((n * seed) % 7) / 6;
+    sheet.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, weights);
+    folder_.write("sheet.glb", sheet.glb());
+    for (const char* viewers :
+         {"", " --for all", " --for three,godot,filament", " --for gltfpack", " --tolerance 0.5"}) {
+      const auto chosen_of = [&](const std::string& arguments) {
+        const ProcessResult result = run("sheet.glb --json -q" + arguments + viewers);
+        const Json candidates = Json::parse(result.out)["meshes"][0]["candidates"];
+        listed += candidates.size();
+        const auto found =
+            std::find_if(candidates.begin(), candidates.end(), [](const Json& c) { return c["chosen"] == true; });
+        return found == candidates.end() ? Json() : Json{(*found)["name"], (*found)["targets"], (*found)["bytes"]};
+      };
+      EXPECT_EQ(chosen_of(" --plan"), chosen_of(" -o out.glb --force")) << "seed " << seed << viewers;
+    }
+  }
+  EXPECT_GT(listed, 100U);
 }
 
 TEST_F(BakeCli, a_plan_lists_the_forms_and_writes_nothing) {

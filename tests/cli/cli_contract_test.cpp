@@ -806,11 +806,9 @@ TEST_F(Cli, convert_warns_of_times_and_velocities_that_the_format_cannot_store) 
   fs::create_directory(folder_ / "moving");
   for (const char* const name : {"moving/m_0.ply", "moving/m_1.ply"}) write(name, ply);
   EXPECT_EQ(warning_of("moving -o moving.npz"), "");
-  for (const char* const input : {"moving", "moving.npz"}) {
-    for (const char* const output : {"out_%d.ply", "out.pc2", "out.mdd"}) {
-      const std::string lost = warning_of(std::string(input) + " -o " + output);
-      EXPECT_NE(lost.find("this format holds no velocities"), std::string::npos) << input << output << lost;
-    }
+  for (const char* const output : {"out_%d.ply", "out.pc2", "out.mdd"}) {
+    const std::string lost = warning_of(std::string("moving.npz -o ") + output);
+    EXPECT_NE(lost.find("this format holds no velocities"), std::string::npos) << output << lost;
   }
 }
 

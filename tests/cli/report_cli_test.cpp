@@ -113,7 +113,7 @@ TEST_F(ReportCli, misuse_is_said_before_anything_is_read) {
   expect_error(run("missing.glb -o a.bin --for unreal"), 2, "--for");
   expect_error(run("missing.glb -o a.bin --weighting weight"), 2, "--weighting");
   expect_error(run("--sample twist -o a.bin --for three"), 2, "--for");
-  expect_error(run("missing.glb"), 2, "--output");
+  expect_error(run("missing.glb"), 2, "-o OUT");
 }
 
 TEST_F(ReportCli, a_file_without_targets_is_refused_with_what_to_do) {

@@ -161,7 +161,7 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   expect_error("a.obj b.obj -o n.npy --times 1 --fps 30", 2, "from 0 to 0.0333333");
   expect_error("a.obj b.obj -o n.npy", 2, "0 to 1");
   expect_error("a.obj b.obj -o n.npy --times 0:1:999998,0,0", 2,
-               "--times: the list has more than 1,000,000 times; take a larger step");
+               "--times: the list has more than 1,000,000 times; give fewer times");
 }
 
 TEST_F(SampleCli, weights_are_for_blend_shapes) {
@@ -277,7 +277,7 @@ TEST_F(SampleCli, meshes_go_to_a_file_each_or_one_to_standard_output) {
 }
 
 TEST_F(SampleCli, exit_codes_and_files_that_exist) {
-  expect_error("a.obj b.obj --times 0", 2, "--output");
+  expect_error("a.obj b.obj --times 0", 2, "-o OUT");
   expect_error("a.obj missing.obj --times 0 -o n.npy", 1, "missing.obj");
   folder_.write("bad.obj", "v 0 0 0\nf 1 1 2\n");
   expect_error("a.obj bad.obj --times 0 -o n.npy", 3, "bad.obj");

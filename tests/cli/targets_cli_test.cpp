@@ -167,7 +167,7 @@ TEST_F(TargetsCli, targets_become_morph_targets_of_a_glb_with_their_names) {
   EXPECT_EQ(run("bake face.glb baked.glb").exit_code, 0);
   EXPECT_EQ(run("audit baked.glb").exit_code, 0);
   EXPECT_EQ(run("convert --sample bumps -o bumps.vrm").exit_code, 0);
-  expect_error("convert base.obj smile.obj -o walk.glb", 2, {"walk.glb", "use bake for other glTF files"});
+  expect_error("convert base.obj smile.obj -o walk.glb", 2, {"walk.glb", "use bake instead"});
   expect_error("convert --base base.obj smile.obj -o face.gltf", 2, {"face.gltf", ".glb"});
   expect_error("convert --base base.obj smile.obj -o face.glb", 1, {"face.glb", "--force"});
 }

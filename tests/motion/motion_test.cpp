@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iostream>
 #include <limits>
+#include <random>
 #include <utility>
 
 #include "chronormal/motion/motion.h"
@@ -141,6 +143,30 @@ TEST(FindInstant, keyframe_belongs_to_the_segment_that_begins_there) {
   EXPECT_EQ(at(3), (std::pair<std::size_t, double>{1, 0}));
   EXPECT_EQ(at(4), (std::pair<std::size_t, double>{1, 0.5}));
   EXPECT_EQ(at(5), (std::pair<std::size_t, double>{1, 1}));
+}
+
+TEST(FindInstant, a_decimal_means_the_keyframe_that_float32_stores) {
+  constexpr unsigned kSeed = 1132;
+  std::cout << "  seed " << kSeed << "\n";
+  std::mt19937 random(kSeed);
+  for (int i = 0; i < 300; ++i) {
+    Motion motion = three_keyframes();
+    const int steps = 1 + static_cast<int>(random() % 40);
+    const double step = std::array{0.1, 0.04, 0.001}[random() % 3], first = step * steps, last = first + 7 * step;
+    motion.keyframes[0].time = 0;
+    motion.keyframes[1].time = static_cast<double>(static_cast<float>(first));
+    motion.keyframes[2].time = static_cast<double>(static_cast<float>(last));
+    const Result<Instant> middle = find_instant(motion, first), end = find_instant(motion, last);
+    ASSERT_TRUE(middle.ok() && end.ok()) << first << " and " << last;
+    EXPECT_EQ(middle.value().segment, 1U) << first;
+    EXPECT_EQ(middle.value().t.t, 0) << first;
+    EXPECT_EQ(end.value().t.t, 1) << last;
+    // Another time that is as near stays what it is.
+    const double near = motion.keyframes[1].time * (1 + 0x1p-26);
+    if (std::fabs(near - first) > 1e-12) {
+      EXPECT_NE(time_of_keyframe_at(motion, near), motion.keyframes[1].time) << first;
+    }
+  }
 }
 
 TEST(FindInstant, time_without_motion_is_a_usage_error_with_the_range) {

@@ -62,8 +62,7 @@ struct GltfExtraTarget {
   std::vector<LinearTerm> linear;
   std::vector<QuadraticTerm> quadratic;
 
-  /// Returns the weight of this target for given weights of the mesh's own targets. `weights` has one number for each
-  /// own target.
+  /// Returns the weight of this target for the given weights of the mesh's own targets.
   [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
   /// Returns true if the weight of this correction target is nonzero when own target i has the only nonzero weight.
   [[nodiscard]] bool follows(std::size_t i) const noexcept;
@@ -97,8 +96,7 @@ struct GltfBakeMark {
   bool sequence = false;  ///< true if the targets are keyframes, which have no meaning one by one
   /// The correction targets, in the order of the mesh's targets; empty if the mark lists none.
   std::vector<GltfExtraTarget> extras;
-  /// True if the deltas are fitted to the animations of the file. The deltas are then meaningless at weights that no
-  /// animation has.
+  /// True if the deltas are fitted to the animations of the file, and meaningless at weights that no animation has.
   bool animations_only = false;
   /// True if the normals of targets at weight 1 are those that the author would see (docs/cli.md), not area-weighted
   /// sums.
@@ -177,10 +175,10 @@ struct GltfTrack {
   bool is_assembled = false;
 };
 
-/// A channel that drives all weights of a node, but that is no track, because it breaks a rule of the format.
+/// A channel that drives all weights of a node, but breaks a rule of the format. `output` is the accessor of the weights.
 struct GltfUnreadTrack {
   std::size_t node = 0, channel = 0;
-  std::optional<std::size_t> output;  ///< the accessor of the weights, if it can hold weights
+  std::optional<std::size_t> output;
 };
 
 struct GltfAnimation {
@@ -291,7 +289,6 @@ class GltfDocument {
 
   /// Reads the weights of a channel that is no track. Errors: the channel has no output; numbers that cannot be read.
   [[nodiscard]] Result<std::vector<float>> unread_weights(const GltfUnreadTrack& track) const;
-
   /// Finds an animation by its name, or else by its index. Errors: kUsage for an unknown animation, with the names of
   /// all animations.
   [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;

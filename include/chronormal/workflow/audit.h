@@ -245,8 +245,7 @@ struct Audit {
   std::vector<ViewerAudit> viewers;  ///< one for each viewer of the options, in the same order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< the findings, faults first
-  /// Sentences on parts of a glTF file that were left out or interpreted differently, and on stored normals of a
-  /// sequence that do not belong to its surface.
+  /// For a glTF file: sentences on parts that were left out or interpreted differently.
   std::vector<std::string> notes;
   /// The errors that keep_errors asks for. There is one table for each mesh of a glTF file with subjects, or one table
   /// for any other input. Tracks with the same keys share rows, which name the first of these tracks.

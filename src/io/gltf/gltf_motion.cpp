@@ -163,9 +163,10 @@ class Assembly {
                                                  " of memory; split the mesh, or use fewer targets or keys");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(document_.name(), "the mesh has more than the " +
-                                                 std::to_string(std::numeric_limits<std::uint32_t>::max() / 3) +
-                                                 " vertices that can be read; split the mesh");
+      return invalid_input(document_.name(),
+                           "the mesh has more than " +
+                               counted(std::numeric_limits<std::uint32_t>::max() / 3, "vertex", "vertices") +
+                               ", which is the most that can be read; split the mesh");
     return Success{};
   }
 

@@ -253,17 +253,13 @@ JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth, std
 
 namespace {
 
-// Finds the vertices of faces that can have an area. A face with two corners at one place has no area in any pose, so
-// no viewer draws it, and the normal of a vertex without any other face does not matter.
-std::vector<bool> drawn_vertices(const GltfShading& shading) {
-  const auto corners = shading.set.topology.corners();
-  std::vector<bool> result(shading.set.topology.vertex_count());
-  for (std::size_t c = 0; c < corners.size(); c += 3) {
-    const std::uint32_t a = shading.place_of(corners[c]), b = shading.place_of(corners[c + 1]),
-                        d = shading.place_of(corners[c + 2]);
-    for (std::size_t i = c; i < c + 3 && a != b && b != d && d != a; ++i) result[corners[i]] = true;
-  }
-  return result;
+// Returns true if the face with this first corner can have an area. A face with two corners at one place has no area in
+// any pose, so no viewer draws it, and the normal of a vertex without any other face does not matter.
+bool is_drawn(const GltfShading& shading, std::size_t first_corner) {
+  const auto corners = shading.set.topology.corners().subspan(first_corner, 3);
+  const std::uint32_t a = shading.place_of(corners[0]), b = shading.place_of(corners[1]),
+                      c = shading.place_of(corners[2]);
+  return a != b && b != c && c != a;
 }
 
 }  // namespace
@@ -271,24 +267,28 @@ std::vector<bool> drawn_vertices(const GltfShading& shading) {
 std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                          std::span<const std::size_t> involved, AuditRule rule) {
   const Topology& topology = shading.set.topology;
-  std::vector<bool> moves(topology.vertex_count()), element_moves(shading.groups.size());
+  std::vector<bool> moves(topology.vertex_count()), element_moves(shading.groups.size()),
+      has_drawn_face(topology.vertex_count());
   for (const std::size_t k : involved)
     for (const std::uint32_t v : shading.set.targets[k].vertices) moves[v] = true;
   const auto corners = topology.corners();
   const auto element_of_vertex = shading.groups.element_of_output();
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    if (!moves[corners[c]]) continue;
-    const std::size_t first = c - c % 3;
-    for (std::size_t i = first; i < first + 3; ++i) element_moves[element_of_vertex[corners[i]]] = true;
+  for (std::size_t first = 0; first < corners.size(); first += 3) {
+    if (!is_drawn(shading, first)) continue;
+    const auto face = corners.subspan(first, 3);
+    const bool is_moved = std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return moves[v]; });
+    for (const std::uint32_t v : face) {
+      has_drawn_face[v] = true;
+      if (is_moved) element_moves[element_of_vertex[v]] = true;
+    }
   }
   if (!truth.is_plain()) {
     for (const std::size_t k : involved)
       for (const std::uint32_t e : truth.elements_of(k)) element_moves[e] = true;
   }
-  const std::vector<bool> is_drawn = drawn_vertices(shading);
   const auto is_judged = [&](std::uint32_t v) {
     const std::uint32_t e = shading.element_of_vertex[v];
-    if (e == GltfShading::kNoElement || !is_drawn[v]) return false;
+    if (e == GltfShading::kNoElement || !has_drawn_face[v]) return false;
     if (element_moves[e]) return true;
     return std::any_of(involved.begin(), involved.end(), [&](std::size_t k) {
       return !shading.normal_deltas[k].empty() && vector_at(shading.normal_deltas[k], v) != Vec3f{};

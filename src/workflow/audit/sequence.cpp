@@ -329,14 +329,6 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const AuthoredWeighting authored = find_authored_weighting(topology, groups.value(), motion.keyframes.size(), read);
     if (const Status status = stream.hold(0, 0); !status) return status.error();
     result.offsets.push_back(authored_offset(authored, asked));
-    const std::vector<float>& base = motion.keyframes[0].positions;
-    const double angle =
-        median_angle(topology, VectorView<const float>::packed(base.data(), base.size() / 3), groups.value(),
-                     VectorView<const float>::packed(normals.of_keyframes[0].data(), topology.corner_count()));
-    if (angle > kLargestMedian)
-      result.notes.push_back("the stored normals differ from the surface by " + with_decimals(angle, 1) +
-                             " degrees in the median, so they do not belong to it, and bake ignores them; check that "
-                             "the cache belongs to this mesh");
     weighting = result.offsets.back().weighting;
   }
 

@@ -76,9 +76,10 @@ TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(error_with(40, "\xFF\xFF\xFF\x7F"),
             "imp.md2, byte 56: the file is cut off, since it should have 2,147,483,647 frames from byte 80 on, but has "
             "only 184 bytes; copy or export it again");
-  EXPECT_EQ(
-      error_with(56, "\xFF\xFF\xFF\xFF"),
-      "imp.md2, byte 56: the file is cut off, since it should have 2 frames from byte -1 on, but has only 184 bytes");
+  EXPECT_EQ(error_with(56, "\xFF\xFF\xFF\xFF"),
+            "imp.md2, byte 56: the file is cut off, since it should have 2 frames from byte -1 on, but has only 184 "
+            "bytes; copy "
+            "or export it again");
   EXPECT_EQ(error_with(70, "\3"),
             "imp.md2, byte 70, triangle 0: corner 1 refers to vertex 3, but the file has only 3 vertices; export the "
             "file again");

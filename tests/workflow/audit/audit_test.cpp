@@ -970,18 +970,6 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
   EXPECT_NEAR(audit_of(turning(), growing, {.samples = 2}).error.worst, 15, 1e-4);
 }
 
-TEST(Audit, stored_normals_that_do_not_belong_to_the_surface_are_a_note) {
-  // At keyframe 0, the normal of the surface is (0, 0, 1).
-  for (const auto& [normal, is_foreign] : {std::pair(thrice(1, 0, 1.1F), false), std::pair(thrice(1, 0, -1.1F), false),
-                                           std::pair(thrice(1, 0, 0.9F), true), std::pair(thrice(0, 1, -0.2F), true)}) {
-    const std::vector<std::string> notes = audit_of(turning(), StoredNormals{{normal}}).notes;
-    ASSERT_EQ(notes.size(), is_foreign ? 1U : 0U);
-    if (is_foreign) {
-      EXPECT_NE(notes[0].find("do not belong to it"), std::string::npos) << notes[0];
-    }
-  }
-}
-
 TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
   // Makes a sequence of the keyframes of the hinge. If the edge is hard, each face has its own normal, and linear
   // interpolation is exact.

@@ -327,6 +327,101 @@ TEST(BakeSequence, normals_are_those_of_polygons_and_not_of_their_triangles) {
   EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the normals of triangles alone are different
 }
 
+// Makes a sheet of squares that is flat and regular in keyframe 0, where all weightings give the same normals, and hilly
+// in all later keyframes. If are_cut is true, the squares are cut into triangles.
+Motion flat_at_first(bool are_cut, std::size_t keyframes, std::uint64_t seed) {
+  constexpr std::uint32_t kSide = 6;
+  Random random(seed);
+  std::vector<std::uint32_t> offsets = {0}, corners;
+  const auto add_face = [&](std::initializer_list<std::uint32_t> face) {
+    corners.insert(corners.end(), face);
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+  };
+  for (std::uint32_t row = 0; row + 1 < kSide; ++row) {
+    for (std::uint32_t a = row * kSide; a + 1 < (row + 1) * kSide; ++a) {
+      if (are_cut) {
+        add_face({a, a + 1, a + kSide + 1});
+        add_face({a, a + kSide + 1, a + kSide});
+      } else {
+        add_face({a, a + 1, a + kSide + 1, a + kSide});
+      }
+    }
+  }
+  Motion motion;
+  motion.topology = Topology::polygons(kSide * kSide, std::move(offsets), std::move(corners)).value();
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    Motion::Keyframe& keyframe = motion.keyframes.emplace_back();
+    keyframe.time = static_cast<double>(k);
+    for (std::uint32_t v = 0; v < kSide * kSide; ++v) {
+      for (const std::uint32_t c : {v % kSide, v / kSide, 0U})
+        keyframe.positions.push_back(
+            static_cast<float>(static_cast<double>(c) + (k == 0 ? 0 : random.uniform(-0.3, 0.3))));
+    }
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+TEST(BakeSequence, an_audit_knows_the_polygons_of_a_baked_sequence_that_is_flat_at_first) {
+  constexpr std::uint64_t kFirstSeed = 1130;
+  std::printf("  from seed %d\n", static_cast<int>(kFirstSeed));
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 8; ++seed) {
+    for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kHarmless}) {
+      const std::string file = bake(flat_at_first(false, 3, seed), {.encoding = encoding});
+      const Result<GltfDocument> document = GltfDocument::read(file, "baked.glb");
+      ASSERT_TRUE(document.ok());
+      const Result<Audit> found = audit(document.value(), {});
+      ASSERT_TRUE(found.ok());
+      EXPECT_LT(found.value().error.worst, encoding == BakeEncoding::kExact ? 1e-3 : 3) << "seed " << seed;
+    }
+  }
+}
+
+TEST(BakeSequence, the_weighting_follows_from_later_keyframes_if_the_first_is_flat) {
+  constexpr std::uint64_t kSeed = 1131;
+  std::printf("  seed %d\n", static_cast<int>(kSeed));
+  const Motion motion = flat_at_first(true, 4, kSeed);
+  const auto corners = motion.topology.corners();
+  // Returns the angle-weighted normal of each corner in a keyframe.
+  const auto normals_of = [&](std::size_t k) -> std::vector<float> {
+    const auto edge = [&](std::uint32_t from, std::uint32_t to) {
+      VectorD result;
+      for (std::size_t c = 0; c < 3; ++c)
+        result[c] =
+            double{motion.keyframes[k].positions[3 * to + c]} - double{motion.keyframes[k].positions[3 * from + c]};
+      return result;
+    };
+    std::vector<VectorD> sums(motion.topology.vertex_count());
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const std::size_t first = c - c % 3;
+      const VectorD a = edge(corners[c], corners[first + (c + 1) % 3]),
+                    b = edge(corners[c], corners[first + (c + 2) % 3]);
+      const VectorD n = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+      const double length = std::hypot(n[0], n[1], n[2]),
+                   angle = std::atan2(length, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+      for (std::size_t i = 0; i < 3; ++i) sums[corners[c]][i] += angle / length * n[i];
+    }
+    std::vector<float> result;
+    for (const std::uint32_t v : corners)
+      for (const double c : sums[v]) result.push_back(static_cast<float>(c));
+    return result;
+  };
+  const std::vector<float> of_first = normals_of(0);
+  BakeOptions options{.viewers = kAddingUp};
+  options.normal_of_corner = VectorView<const float>::packed(of_first.data(), of_first.size() / 3);
+  SequenceBake alone, together, without;
+  (void)bake(motion, options, &alone);
+  options.normals_of_keyframe = [&](std::size_t k) -> Result<std::vector<float>> { return normals_of(k); };
+  (void)bake(motion, options, &together);
+  options.normals_of_keyframe = [](std::size_t) -> Result<std::vector<float>> {
+    return Error{ErrorCode::kFailed, "", "the file is gone"};
+  };
+  (void)bake(motion, options, &without);
+  EXPECT_EQ(alone.weighting, Weighting::kArea);
+  EXPECT_EQ(together.weighting, Weighting::kAngle);
+  EXPECT_EQ(without.weighting, Weighting::kArea);
+}
+
 TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
   const Motion motion = wandering(fixtures::icosphere(1), 4, 0.15, 5);
   Motion reversed = motion;

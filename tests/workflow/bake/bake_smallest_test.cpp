@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "chronormal/workflow/audit.h"
 #include "tests/support/bake_fixture.h"
+#include "tests/support/shaded_mesh.h"
 #include "workflow/bake/poses/played_poses.h"
 
 namespace chronormal::bake_smallest_test {
@@ -358,6 +360,52 @@ TEST(BakeSmallest, names_of_targets_in_primitives_are_read_and_extended) {
   const auto& after = baked.mesh()["primitives"][0]["extras"]["targetNames"];
   EXPECT_EQ(after.size(), kTargets + baked.report.added_targets);
   EXPECT_FALSE(baked.mesh()["extras"].contains("targetNames"));
+}
+
+// Correction targets that animations drive have weight 0 when somebody moves a slider of the file.
+TEST(BakeSmallest, a_slider_alone_is_judged_as_a_viewer_shows_it) {
+  constexpr std::uint64_t kFirstSeed = 1133;
+  std::cout << "  from seed " << kFirstSeed << "\n";
+  std::size_t followed = 0;
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 6; ++seed) {
+    test::ShadedMesh mesh = test::random_sheet(seed, 6, 2, 0);
+    GltfBuilder builder = mesh.file();
+    builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0.5F, 0.3F, 1});
+    BakeOptions options;
+    options.weighting = Weighting::kArea;
+    options.viewers = {kViewers[0]};
+    const Baked baked = test::bake_bytes(builder.glb(), options);
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    for (const GltfExtraTarget& extra : baked.report.meshes[0].extras)
+      followed += extra.linear.size() + extra.quadratic.size();
+    const test::GltfFixture before(builder.glb()), after(baked.bytes);
+    AuditOptions asked;
+    asked.weighting = Weighting::kArea;
+    const Result<Audit> first = audit(*before, asked);
+    ASSERT_TRUE(first.ok());
+    asked.weighed_like = &first.value();
+    const Result<Audit> second = audit(*after, asked);
+    ASSERT_TRUE(second.ok());
+    for (std::size_t k = 0; k < 2; ++k)
+      mesh.targets[k].normals = baked.numbers(baked.mesh()["primitives"][0]["targets"][k]["NORMAL"]);
+    for (const AuditSubject& subject : second.value().subjects) {
+      for (const AuditSubject& earlier : first.value().subjects) {
+        if (earlier.kind == subject.kind && earlier.target == subject.target) {
+          EXPECT_EQ(subject.error.judged, earlier.error.judged) << "seed " << seed;
+        }
+      }
+      if (subject.kind != AuditSubject::Kind::kTarget) continue;
+      double worst = 0;
+      for (std::size_t i = 0; i < subject.samples; ++i) {
+        std::vector<double> weights(2);
+        weights[*subject.target] = static_cast<double>(i) / static_cast<double>(subject.samples - 1);
+        for (std::size_t v = 0; v < mesh.vertices(); ++v)
+          worst = std::max(worst, static_cast<double>(mesh.error(v, weights)));
+      }
+      EXPECT_NEAR(subject.error.worst, worst, 0.02) << "seed " << seed << ", target " << *subject.target;
+    }
+  }
+  EXPECT_GT(followed, 0U);
 }
 
 TEST(BakeSmallest, a_result_is_not_worse_because_fewer_normals_are_judged) {

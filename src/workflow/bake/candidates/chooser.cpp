@@ -125,7 +125,7 @@ class Chooser {
     judged.is_affordable = bytes <= most_bytes() && candidate.drivers.size() <= most_extras(options_, targets);
     judged.is_bearable = bytes <= bearable_bytes(candidate.drivers.size());
     const bool is_stored = candidate.name == stored_.name;
-    const bool is_out = is_closed_ || is_hopeless(candidate);
+    const bool is_out = only_lists_ || is_hopeless(candidate);
     if (is_out && !options_.plan) return bytes;
     const std::vector<ErrorsOfKinds> after = is_stored ? before_ : judge_->measure(candidate, Judge::Depth::kAll);
     judge(after, judged);
@@ -180,16 +180,21 @@ class Chooser {
   }
   // Returns true if the best candidate is accurate enough and takes at most `bytes` bytes, so that no other candidate
   // needs to be tried.
-  [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) {
-    return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
-           ends_choice();
+  [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
+    return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes;
   }
-  // Ends the choice. Returns true if no more candidates are needed, and false if a plan is requested (options_.plan).
-  // For a plan all other candidates are measured, too, but none of them is chosen, so that a plan names the candidate
-  // that a bake writes.
-  [[nodiscard]] bool ends_choice() noexcept {
-    is_closed_ = true;
-    return !options_.plan;
+  // Tells whether to look at the next candidates if a bake does so unless `is_enough`. A plan (options_.plan) looks at
+  // all candidates, but until go_on() is called, it only lists those at which a bake does not look. For this reason a
+  // plan recommends what a bake writes.
+  [[nodiscard]] bool looks_unless(bool is_enough) noexcept {
+    only_lists_ = is_closed_ || is_enough;
+    return !only_lists_ || options_.plan;
+  }
+  void go_on() noexcept { only_lists_ = is_closed_; }
+  // Ends the choice if `is_enough`. Returns true if there is nothing left to do, not even to list more candidates.
+  [[nodiscard]] bool ends_if(bool is_enough) noexcept {
+    only_lists_ = is_closed_ |= is_enough;
+    return is_closed_ && !options_.plan;
   }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
@@ -345,9 +350,9 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;          // the index of the best candidate in candidates_
-  std::vector<double> means_of_best_;  // the mean errors of the best candidate in the named viewers
-  bool is_closed_ = false;             // if true, other candidates are only measured
+  std::size_t of_choice_ = 0;                    // the index of the best candidate in candidates_
+  std::vector<double> means_of_best_;            // the mean errors of the best candidate in the named viewers
+  bool is_closed_ = false, only_lists_ = false;  // if true, no candidate, or not the next one, can become the best
   std::vector<BakedCandidate> candidates_;
 };
 
@@ -374,8 +379,7 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
     chooser.consider(std::move(candidate));
-    if (chooser.is_found()) return false;
-    if (chooser.of_best().mean > kWorthIt * mean && chooser.ends_choice()) return false;
+    if (chooser.ends_if(chooser.is_found() || chooser.of_best().mean > kWorthIt * mean)) return false;
     mean = chooser.of_best().mean;
     return true;
   });
@@ -407,14 +411,14 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   if (!waits) chooser.consider(own);
   const std::size_t bytes = bytes_of(source.shading, weights, own);
   reach(20);
-  if (chooser.is_found()) return;
+  if (chooser.ends_if(chooser.is_found())) return;
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
   // Deltas of any length may be closer than deltas that are right at weight 1, even if the terms of n(w) are a fit.
-  if (!chooser.is_found() && !making.rights.are_by_area() && making.lengths != Lengths::kUnit &&
-      !has_unit(making.viewers))
+  const bool any_length = making.lengths != Lengths::kUnit && !has_unit(making.viewers);
+  if (any_length && !making.rights.are_by_area() && chooser.looks_unless(chooser.is_found()))
     chooser.consider(fitted_candidate(source));
   std::optional<Candidate> similar;  // if set, own deltas of any length are judged last
-  if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
+  if (making.lengths == Lengths::kShort && any_length && chooser.looks_unless(chooser.is_found())) {
     // Tries deltas of any length too. Viewers that add deltas as stored render the true normals with them, and in many
     // files other viewers render such deltas no worse than the file before the bake.
     Making of_any = making;
@@ -424,20 +428,25 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
       if (similar && !chooser.is_far(*similar)) similar.reset();
       if (!similar) chooser.consider(own_candidate(source, making.rights, of_any.lengths));
     }
-    if (!chooser.is_found() && has_few_products(of_any, weights)) chooser.consider(products_candidate(of_any));
+    if (has_few_products(of_any, weights) && chooser.looks_unless(chooser.is_found()))
+      chooser.consider(products_candidate(of_any));
   }
+  chooser.go_on();
   if (making.most_extras == 0) return;
   reach(40);
-  if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
+  if (weights.rig && source.plan.products_fit && chooser.looks_unless(chooser.is_found()))
+    look_at_quadratics(making, own, chooser);
+  chooser.go_on();
   if (has_extras) {
     // All viewers render the same normals if corrections are perpendicular to the stored normal N. Such corrections may
     // need more correction targets.
     Making across = making;
     across.keeps_across |= making.lengths == Lengths::kShort;
     look_at_low_rank(across, own, bytes, chooser);
-    if (across.keeps_across != making.keeps_across && !chooser.is_found())
+    if (across.keeps_across != making.keeps_across && chooser.looks_unless(chooser.is_found()))
       look_at_low_rank(making, own, bytes, chooser);
   }
+  chooser.go_on();
   if (waits) chooser.consider(own);
   if (similar && !chooser.is_hopeless(*similar)) chooser.consider(own_candidate(source, making.rights, Lengths::kFree));
   reach(90);
@@ -479,7 +488,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     chooser.consider(products_candidate(making));
     return chooser.take();
   }
-  if (chooser.is_found(0)) return chooser.take();
+  if (chooser.ends_if(chooser.is_found(0))) return chooser.take();
   for (int tries = 0; tries <= kMostTightened; ++tries) {
     // Deltas that are fitted to animations help only viewers that add up deltas of any length.
     Making making = chooser.making(options.animations_only);
