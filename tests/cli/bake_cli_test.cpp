@@ -63,13 +63,17 @@ TEST_F(BakeCli, report_names_the_viewers_in_which_the_file_gets_worse) {
   constexpr std::uint64_t kFirstSeed = 1128;
   std::cout << "  from seed " << kFirstSeed << "\n";
   std::size_t named = 0;
-  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 6; ++seed) {
-    test::GltfBuilder sheet = test::random_sheet(seed, 4, 1 + seed % 3, 0).file();
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 4; ++seed) {
+    const std::size_t targets = 1 + seed % 3;
+    test::GltfBuilder sheet = test::with_misleading_normals(test::hills_document(targets, static_cast<unsigned>(seed)));
+    std::vector<float> weights(3 * targets);
+    for (std::size_t n = targets; n < weights.size(); ++n) weights[n] = n % 2 == 0 ? 1 : 0.6F;
+    sheet.add_track(0, 0, std::vector<float>{0, 1, 2}, weights);
     folder_.write("sheet.glb", sheet.glb());
     // Makes another input, right.glb, in which each target has the right normals at weight 1.
     ASSERT_EQ(run("sheet.glb -o right.glb --encode harmless --force").exit_code, 0);
     for (const char* input : {"sheet.glb", "right.glb", "moving.glb"}) {
-      for (const char* tolerance : {"", " --tolerance 0.01"}) {
+      for (const char* tolerance : {"", " --tolerance 0.01", " --encode endpoint"}) {
         const ProcessResult result = run(std::string(input) + " -o baked.glb --force" + tolerance);
         ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 4) << result.err;
         std::string worse;

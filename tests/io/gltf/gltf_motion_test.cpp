@@ -492,8 +492,9 @@ TEST(GltfMemory, vertices_that_32_bits_cannot_name_are_refused_before_they_are_r
   const Result<GltfMotion> motion = read_gltf_motion(*file, options);
   ASSERT_FALSE(motion.ok());
   if constexpr (sizeof(std::size_t) > 4) {
-    EXPECT_EQ(motion.error().text(),
-              "a.gltf: the mesh has more than the 1431655765 vertices that can be read; split the mesh");
+    EXPECT_EQ(
+        motion.error().text(),
+        "a.gltf: the mesh has more than 1,431,655,765 vertices, which is the most that can be read; split the mesh");
   }
 }
 
