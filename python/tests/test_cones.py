@@ -57,7 +57,7 @@ class ConesTest(unittest.TestCase):
 
     def test_misuse_names_the_argument(self):
         p0, p1, faces = sheet()
-        for arguments, place in (({"meshlets": 3}, "--meshlets"), ({"start": 1, "end": 1}, "--to")):
+        for arguments, place in (({"meshlets": 3}, "--meshlets"), ({"start": 1, "end": 1}, "end: the last time")):
             with self.assertRaisesRegex(ValueError, place):
                 cn.cones([p0, p1], faces, **arguments)
         with self.assertRaisesRegex(ValueError, "positions: the shape"):
