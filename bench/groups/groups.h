@@ -44,11 +44,11 @@ struct SchemeQuality {
 [[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
 [[nodiscard]] std::vector<std::string> benchmark_schemes();
 
-/// The error of a path, which is a way to compute normals, over all elements and many t, in radians.
+/// The errors of a path (a way to compute normals) in radians, over all elements and many t, and its memory.
 struct Accuracy {
   std::string path, mesh, elements;
   double bound = 0;  ///< the bound that the path promises, in radians
-  double mean = 0, share_9999 = 0, max = 0;
+  double mean = 0, share_9999 = 0, max = 0;  ///< 99.99 % of the errors are at most share_9999
   std::size_t samples = 0;  ///< number of pairs of an element and a t
   double bytes = 0;         ///< bytes of prepared data for each element; 0 if the path keeps none
 };

@@ -25,7 +25,7 @@ using Align = Table::Align;
 constexpr std::size_t kLongestBar = 40;
 constexpr double kSeen = 0.005;                     // the smallest number of degrees that two decimals show
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples for the columns of percentiles
-// The smallest displacement of a vertex that is reported for a viewer, as a share of the size of the mesh.
+// A report names a viewer that draws a vertex farther from its true place than this share of the mesh's diagonal.
 constexpr double kDisplaced = 1e-5;
 
 // Returns words that say if the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges
@@ -144,8 +144,8 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// Returns a table with a row of errors for each viewer. The first row is for the specification, to which all later
-// tables refer.
+// Returns a table with a row of errors for each viewer. The first row follows the specification of glTF, and so do all
+// later tables.
 std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.viewers.empty()) return "";

@@ -50,7 +50,7 @@ struct PartNormals {
   std::vector<double> sizes;  ///< for each element, the sum of the largest components of its normal's terms
 };
 
-/// The part of a mesh that determines the normals of some outputs. It has the elements of the outputs (groups of
+/// The part of a mesh that determines some of the judged normals (the outputs). It has the elements of the outputs (groups of
 /// corners that share a normal), and the faces and vertices around these elements.
 class JudgedPart {
  public:

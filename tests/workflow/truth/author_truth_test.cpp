@@ -60,7 +60,7 @@ struct Authored {
     result.to = result.from;
     return result;
   }
-  // Returns the sums of the face normals around all vertices, by a weighting and at these weights of the targets.
+  // Returns for each vertex the sum of the normals of its faces, by `weighting`, in the pose with these target weights.
   [[nodiscard]] std::vector<Vector> sums(const std::string& weighting, const std::vector<double>& weights) const {
     const reference::Mesh at = mesh(weights);
     std::vector<Vector> result(file.vertices(), Vector{});

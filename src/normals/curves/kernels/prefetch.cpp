@@ -49,8 +49,8 @@ class Rules {
   PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
 
  private:
-  // Small working sets try fewer distances. During a trial, other data may have evicted their curves from the small
-  // cache, and the trial would then favour too large a distance.
+  // Small working sets try only short distances. Other data may evict their curves from the L1 or L2 cache during a
+  // trial, and the trial would then favour too large a distance.
   std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
 };
 
