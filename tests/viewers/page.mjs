@@ -119,8 +119,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
 };
 
 // Blends several clips of a file in a viewer, and compares two pictures with one of a still file of the true shape: a
-// picture before chronormal's package drives the correction targets, and a picture while it does. `weights` has the weights of the targets in the blend. In
-// three.js, the mixer of a clone of the model plays the clips.
+// picture before chronormal's package drives the correction targets, and a picture while it does. `weights` has the
+// weights of the targets in the blend. In three.js, the mixer of a clone of the model plays the clips.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

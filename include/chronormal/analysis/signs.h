@@ -139,10 +139,11 @@ struct Facing {
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }
 };
 
-/// Finds for each face of a range which side `view` sees, and when this side changes. `normals` are the control normals of these faces, from face_control_normals()
-/// for this segment; result has an element for each face. Cost: about as much as unit_normal_at() for each face. A face
-/// that changes sides twice or more takes several times as long. A face that is edge-on
-/// without changing sides, or edge-on at t = 0, 1/2 or 1, takes some microseconds more, for integer arithmetic.
+/// Finds for each face of a range which side `view` sees, and when this side changes. `normals` are the control normals
+/// of these faces, from face_control_normals() for this segment; result has an element for each face. Cost: about as
+/// much as unit_normal_at() for each face. A face that changes sides twice or more takes several times as long. A face
+/// that is edge-on without changing sides, or edge-on at t = 0, 1/2 or 1, takes some microseconds more, for integer
+/// arithmetic.
 void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                   std::span<Facing> result) noexcept;
 

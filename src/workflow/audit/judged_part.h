@@ -50,8 +50,8 @@ struct PartNormals {
   std::vector<double> sizes;  ///< for each element, the sum of the largest components of its normal's terms
 };
 
-/// The part of a mesh that determines some of the judged normals (the outputs). It has the elements of the outputs (groups of
-/// corners that share a normal), and the faces and vertices around these elements.
+/// The part of a mesh that determines some of the judged normals (the outputs). It has the elements of the outputs
+/// (groups of corners that share a normal), and the faces and vertices around these elements.
 class JudgedPart {
  public:
   /// Creates the part. Elements and faces of the outputs are renumbered for this part, but vertices and corners keep

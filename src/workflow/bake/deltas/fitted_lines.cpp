@@ -131,7 +131,7 @@ class Fit {
   struct Row {
     Vec3d right, alone, shown;         // the true direction, the sum of single deltas, and the present sum
     std::size_t first = 0, count = 0;  // the range of the row in active_
-    double part = 0;                   // the factor of the row in the least squares; it turns a small error into an angle
+    double part = 0;  // the factor of the row in the least squares; it turns a small error into an angle
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
     return std::span(active_).subspan(row.first, row.count);
