@@ -47,10 +47,10 @@ struct SchemeQuality {
 /// The errors of a path (a way to compute normals) in radians, over all elements and many t, and its memory.
 struct Accuracy {
   std::string path, mesh, elements;
-  double bound = 0;  ///< the bound that the path promises, in radians
+  double bound = 0;                          ///< the bound that the path promises, in radians
   double mean = 0, share_9999 = 0, max = 0;  ///< 99.99 % of the errors are at most share_9999
-  std::size_t samples = 0;  ///< number of pairs of an element and a t
-  double bytes = 0;         ///< bytes of prepared data for each element; 0 if the path keeps none
+  std::size_t samples = 0;                   ///< number of pairs of an element and a t
+  double bytes = 0;                          ///< bytes of prepared data for each element; 0 if the path keeps none
 };
 /// Measures the accuracy of all paths. Throws std::runtime_error if a path exceeds the error that it promises.
 [[nodiscard]] std::vector<Accuracy> measure_accuracy(const Suite& suite);
