@@ -57,17 +57,18 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has grown more than is allowed. The mean error may grow up to the tolerance, and each other
-// error by the tolerance. Also returns true if too many more edges are torn beyond one of the angles 10, 20 and 40
+// Returns true if an error has grown more than is allowed. The mean error may grow up to the tolerance (or, if the poses
+// do not decide, by the tolerance), and each other error by the tolerance. Also returns true if too many more edges are torn beyond one of the angles 10, 20 and 40
 // degrees, of which only the first `thresholds` count. For each hundred edges torn before (beyond 10 degrees), one more
 // edge may be torn.
-bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
+bool grows(const ShownErrors& before, const ShownErrors& after, bool decides, double tolerance,
+           std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
   bool is_torn = false;
   for (std::size_t k = 0; k < thresholds; ++k) is_torn |= after.tears[k] > before.tears[k] + before.tears[0] / kOneOf;
-  return is_torn || after.mean > std::fmax(before.mean + kHarmless, tolerance) || after.most > before.most + turn ||
-         after.worst > before.worst + turn;
+  const double most_mean = std::fmax(before.mean + (decides ? kHarmless : tolerance), tolerance);
+  return is_torn || after.mean > most_mean || after.most > before.most + turn || after.worst > before.worst + turn;
 }
 
 struct Judged {
@@ -277,8 +278,8 @@ class Chooser {
         if (choice.animations_only && k != static_cast<std::size_t>(PoseKind::kFile))
           change.poses[k].before = {};
         else
-          any_grows |= grows(change.poses[k].before, change.poses[k].after, tolerance_,
-                             is_named ? change.poses[k].before.tears.size() : 1);
+          any_grows |= grows(change.poses[k].before, change.poses[k].after, judge_->decides(static_cast<PoseKind>(k)),
+                             tolerance_, is_named ? change.poses[k].before.tears.size() : 1);
       }
       const auto all_of = [&](const ErrorsOfKinds& kinds) {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();

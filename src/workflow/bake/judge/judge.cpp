@@ -187,7 +187,11 @@ JudgedErrors errors_of_all(const ErrorsOfKinds& kinds) {
 
 Judge::Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
              std::span<const Viewer> viewers, std::size_t named, bool animations_only)
-    : rights_(rights), weights_(weights), viewers_(viewers), named_(named) {
+    : rights_(rights),
+      weights_(weights),
+      viewers_(viewers),
+      named_(named),
+      are_sliders_driven_(source.plan.encoding != BakeEncoding::kSmallest) {
   const std::vector<VertexVectors> stored = stored_deltas(source.shading);
   vertices_ = judged_vertices(source, stored);
   const std::vector<SurfaceEdge> edges = surface_edges(source.shading);
@@ -250,7 +254,7 @@ std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth dept
     if (candidate.animations_only && known.set.kind != PoseKind::kFile) continue;
     if (depth == Depth::kGlance && !decides(known.set.kind)) continue;
     const std::vector<SeenPose> poses =
-        with_extra_targets(known.set, weights_, candidate.drivers, viewers_[known.set.viewers[0]]);
+        with_extra_targets(known.set, weights_, candidate.drivers, viewers_[known.set.viewers[0]], are_sliders_driven_);
     const bool is_skinned = any_skinned(poses);
     std::vector<std::pair<Viewer, JudgedErrors>> measured;
     for (const std::size_t v : known.set.viewers) {

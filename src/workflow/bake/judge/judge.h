@@ -109,6 +109,7 @@ class Judge {
   const MeshWeights& weights_;
   std::span<const Viewer> viewers_;
   std::size_t named_;
+  bool are_sliders_driven_;  // true if a program may drive correction targets although animations do so, too
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
   mutable Differences differences_;  // kept, so that each measurement uses the same memory

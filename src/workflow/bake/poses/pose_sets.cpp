@@ -77,7 +77,7 @@ std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewe
 }
 
 std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights, const ExtraDrivers& drivers,
-                                         const Viewer& viewer) {
+                                         const Viewer& viewer, bool are_sliders_driven) {
   const PoseList standing = drivers.standing(weights.poses);
   std::map<std::size_t, PlayedTrack> tracks;
   const auto track_of = [&](std::size_t t) -> const PlayedTrack& {
@@ -101,7 +101,7 @@ std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& 
       seen.weights.insert(seen.weights.end(), all.begin() + static_cast<std::ptrdiff_t>(own), all.end());
     } else if (pose.standing != PlayedPose::kNone) {
       seen.weights = standing[pose.standing];
-    } else if (set.kind == PoseKind::kAlone && !weights.rig && !weights.tracks.empty()) {
+    } else if (set.kind == PoseKind::kAlone && !are_sliders_driven && weights.is_driven) {
       seen.weights.resize(seen.weights.size() + drivers.size());  // only animations drive the correction targets
     } else {
       seen.weights = drivers.with_extras(std::move(seen.weights));

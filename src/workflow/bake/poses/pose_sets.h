@@ -39,9 +39,10 @@ struct PoseSet {
 
 /// Returns the poses of a set with the weights of correction targets appended. For poses of tracks, these are the
 /// weights that the viewer plays from the tracks which the bake will write. With a target alone, they are zero if
-/// animations drive the mesh, because nothing drives correction targets when somebody moves a slider.
+/// animations drive the mesh and no program does (are_sliders_driven), because a viewer moves nothing but the slider.
 [[nodiscard]] std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights,
-                                                       const ExtraDrivers& drivers, const Viewer& viewer);
+                                                       const ExtraDrivers& drivers, const Viewer& viewer,
+                                                       bool are_sliders_driven);
 
 }  // namespace chronormal::inline internal
 
