@@ -547,24 +547,6 @@ TEST(AuthorTruth, normals_in_eight_bits_have_no_offsets) {
   EXPECT_EQ(truth.truth->offset_count(), 0U);
 }
 
-TEST(AuthorTruth, normals_in_twelve_bits_join_no_triangles) {
-  std::mt19937 random(kSeed + 13);
-  for (int draw = 0; draw < 6; ++draw) {
-    Authored mesh = quads(random, 24);
-    mesh.polygons.clear();
-    for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
-      mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});
-    for (auto& target : mesh.file.targets) target.normals.clear();
-    std::vector<Vector> base = mesh.sums("area", {0, 0});
-    for (Vector& n : base)
-      for (Real& c : n) c = std::round(2047 * c) / 2047;
-    mesh.store(base, {});
-    const Truth truth(mesh.file);
-    EXPECT_FALSE(truth.truth->rule().any_polygons) << draw;
-    EXPECT_FALSE(truth.truth->rule().any_whole_point) << draw;
-  }
-}
-
 TEST(AuthorTruth, a_key_that_bends_a_normal_far_from_what_it_moves_turns_it) {
   std::mt19937 random(kSeed + 12);
   Authored mesh = quads(random);
