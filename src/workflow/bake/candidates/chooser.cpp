@@ -58,9 +58,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
 }
 
 // Returns true if an error has grown more than is allowed. The mean error may grow up to the tolerance (or, if the poses
-// do not decide, by the tolerance), and each other error by the tolerance. Also returns true if too many more edges are torn beyond one of the angles 10, 20 and 40
-// degrees, of which only the first `thresholds` count. For each hundred edges torn before (beyond 10 degrees), one more
-// edge may be torn.
+// do not decide, by the tolerance), and each other error by the tolerance. Also returns true if too many more edges are
+// torn beyond one of the angles 10, 20 and 40 degrees, of which only the first `thresholds` count. For each hundred
+// edges torn before (beyond 10 degrees), one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, bool decides, double tolerance,
            std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
@@ -71,6 +71,7 @@ bool grows(const ShownErrors& before, const ShownErrors& after, bool decides, do
   return is_torn || after.mean > most_mean || after.most > before.most + turn || after.worst > before.worst + turn;
 }
 
+// A candidate, and how the chooser has judged it.
 struct Judged {
   BakedCandidate choice;
   // The number of named viewers in which the candidate is better than the stored deltas, and the number of other
